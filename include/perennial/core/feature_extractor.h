@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "perennial/core/feature.h"
+#include "perennial/core/parameter_reader.h"
+
+namespace perennial {
+
+/// What is extracted from an image. A map is usable only with the settings it was taught with, see `describe()`.
+struct ExtractionSettings {
+  int features = 500;           ///< N: described features wanted per image, the strongest ones
+  int octaves = 4;              ///< octaves of the scale space
+  int layers = 3;               ///< layers per octave in which maxima are sought
+  double min_response = 1e-6;   ///< features weaker than this are never used, however few there are
+
+  /// Keys as the members are called. Throws ParameterError.
+  static ExtractionSettings load(ParameterReader& reader);
+
+  /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...".
+  std::string describe() const;
+};
+
+/// Detects upright SURF keypoints and describes them by BRIEF.
+///
+/// The result depends on the image and the settings only: the threshold that adapts from frame to frame decides how
+/// much work is done, never what comes out (see surf_detector.h). Features are ordered by falling response; equal
+/// responses by y, then x, then scale. One instance serves one thread; buffers are kept between calls.
+class FeatureExtractor {
+ public:
+  explicit FeatureExtractor(const ExtractionSettings& settings = {});
+  ~FeatureExtractor();
+  FeatureExtractor(FeatureExtractor&&) noexcept;
+  FeatureExtractor& operator=(FeatureExtractor&&) noexcept;
+
+  /// `image`: CV_8UC1 of any size; one too small for a single feature gives none. Throws ImageError for another type.
+  FeatureSet extract(const cv::Mat& image);
+
+  const ExtractionSettings& settings() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace perennial

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "perennial/core/local_map.h"
+#include "perennial/core/path_profile.h"
+
+namespace perennial {
+
+/// What is known of a map as a whole.
+struct MapMetadata {
+  std::string name;
+  std::string camera;          ///< name of the camera (or its frame) it was taught with
+  int image_width = 0;         ///< px
+  int image_height = 0;        ///< px
+  std::string image_encoding;  ///< as in sensor_msgs/Image: "mono8", "bgr8"; the map itself stores grey images
+  std::string extraction;      ///< ExtractionSettings::describe() of the teaching
+  double map_interval_m = 0.0;
+  double taught_stamp_s = 0.0; ///< stamp of the first image, seconds since 1970
+  double length_m = 0.0;       ///< length of the taught path; at least the last local map's distance
+};
+
+/// One traversal that the map has learned from. Traversal 0 is the teaching.
+struct TraversalInfo {
+  std::uint32_t id = 0;
+  std::string strategy;        ///< "score_based/1"; empty for the teaching
+  double start_stamp_s = 0.0;
+  double end_stamp_s = 0.0;
+  std::size_t updated_maps = 0;
+};
+
+/// Where a local map is, without its features.
+struct LocalMapPlace {
+  std::uint32_t index = 0;
+  double distance_m = 0.0;
+};
+
+/// Writes a newly taught map. Everything goes to `<file>.partial`; only finish() makes `<file>` appear, complete and in
+/// one step, so that a half-taught map is never taken for a whole one. One thread. Throws MapError.
+class MapWriter {
+ public:
+  /// Creates missing folders. Refuses an existing `file` unless `overwrite`; the old one stays until finish().
+  MapWriter(const std::string& file, const MapMetadata& metadata, bool overwrite);
+  /// Without finish(): removes the partial file.
+  ~MapWriter();
+  MapWriter(MapWriter&&) noexcept;
+  MapWriter& operator=(MapWriter&&) = delete;
+
+  /// `map.index` must be the number of maps added before, distances must not fall. `image`: CV_8UC1, stored as PNG.
+  void add(const LocalMap& map, const cv::Mat& image);
+
+  /// Stores the profile and the length, syncs, and renames to the final name. A map without local maps is refused.
+  void finish(const PathProfile& profile, double length_m);
+
+  std::size_t size() const;  ///< local maps added
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// A taught map: one SQLite file. Local maps are read when asked for, never all at once; opening does not depend on the
+/// length of the path. Every blob carries a checksum, tested on reading.
+///
+/// Changes are staged by a traversal and appear in one transaction, commitTraversal(). States of earlier traversals are
+/// kept, the taught state always. One thread at a time; several readers of one file are fine, one writer.
+/// Throws MapError, with the file's name and what to do, for a file that is missing, no map, damaged, or of another
+/// format version.
+class MapFile {
+ public:
+  explicit MapFile(const std::string& file);
+  ~MapFile();
+  MapFile(MapFile&&) noexcept;
+  MapFile& operator=(MapFile&&) noexcept;
+
+  const std::string& file() const;
+  const MapMetadata& metadata() const;
+  const PathProfile& profile() const;
+  std::size_t size() const;  ///< number of local maps
+
+  /// Local map `index`, in its newest committed or staged state; or in the state after traversal `traversal`.
+  LocalMap read(std::uint32_t index) const;
+  LocalMap readAt(std::uint32_t index, std::uint32_t traversal) const;
+  /// The taught image, decoded (CV_8UC1), or as the stored PNG.
+  cv::Mat readImage(std::uint32_t index) const;
+  std::vector<std::uint8_t> readImagePng(std::uint32_t index) const;
+
+  /// Local maps with from_m <= distance <= to_m, in order.
+  std::vector<LocalMapPlace> between(double from_m, double to_m) const;
+  /// The local map nearest in distance; of two equally near the earlier one.
+  LocalMapPlace nearest(double distance_m) const;
+
+  /// Traversals in order; the first is the teaching.
+  std::vector<TraversalInfo> traversals() const;
+
+  /// Opens a traversal: what is staged from now on belongs to it. Another open one is an error. Returns its id.
+  std::uint32_t beginTraversal(const std::string& strategy, double start_stamp_s);
+  /// New state of a local map; replaces an earlier one staged for it. read() sees it at once, the file does not.
+  void stage(const LocalMap& map);
+  /// All of the traversal or nothing. Without anything staged, no traversal is recorded.
+  void commitTraversal(double end_stamp_s);
+  void discardTraversal();
+
+  /// Forgets every traversal after `traversal`.
+  void rollback(std::uint32_t traversal);
+
+  /// Reads everything and returns what is wrong, empty when nothing is.
+  std::vector<std::string> verify() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace perennial

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace perennial {
+
+/// Velocities commanded to the robot.
+struct Velocity {
+  double forward = 0.0;  ///< m/s, positive forward
+  double angular = 0.0;  ///< rad/s, positive to the left (counter-clockwise seen from above)
+  double flipper = 0.0;  ///< rad/s of the flippers, for robots that have them (linear.x, angular.z, angular.y of cmd_vel)
+
+  bool operator==(const Velocity& other) const {
+    return forward == other.forward && angular == other.angular && flipper == other.flipper;
+  }
+  bool operator!=(const Velocity& other) const { return !(*this == other); }
+};
+
+/// From this distance on, the robot was driven with this velocity.
+struct ProfileEntry {
+  double distance_m = 0.0;
+  Velocity velocity;
+};
+
+/// The taught velocities as a step function of the travelled distance.
+class PathProfile {
+ public:
+  /// Appends an entry unless the velocity is unchanged. Of several entries at one distance the last one holds, so
+  /// that a stop on the way does not become a stop for ever. Throws Error for a value that is not finite or a distance
+  /// before the last one.
+  void add(double distance_m, const Velocity& velocity);
+
+  /// Velocity at this distance: that of the last entry at or before it; the first entry's before the first one.
+  /// Zero for an empty profile.
+  Velocity at(double distance_m) const;
+
+  const std::vector<ProfileEntry>& entries() const { return entries_; }
+  bool empty() const { return entries_.empty(); }
+
+ private:
+  std::vector<ProfileEntry> entries_;
+};
+
+}  // namespace perennial
