@@ -59,4 +59,7 @@ class MapStrategy {
   virtual void update(LocalMap& map, const Observation& observation) const = 0;
 };
 
+/// Under what a strategy's numbers are stored in a local map: "score_based/1".
+std::string numbersOwner(const MapStrategy& strategy);
+
 }  // namespace perennial
