@@ -29,14 +29,27 @@ void PathProfile::add(double distance_m, const Velocity& velocity) {
   entries_.push_back({distance_m, velocity});
 }
 
-Velocity PathProfile::at(double distance_m) const {
-  if (entries_.empty()) {
-    return {};
-  }
+std::vector<ProfileEntry>::const_iterator PathProfile::entryAt(double distance_m) const {
   const auto after =
       std::upper_bound(entries_.begin(), entries_.end(), distance_m,
                        [](double distance, const ProfileEntry& entry) { return distance < entry.distance_m; });
-  return after == entries_.begin() ? entries_.front().velocity : std::prev(after)->velocity;
+  return after == entries_.begin() ? after : std::prev(after);
+}
+
+Velocity PathProfile::at(double distance_m) const {
+  const auto entry = entryAt(distance_m);
+  return entry == entries_.end() ? Velocity{} : entry->velocity;
+}
+
+Velocity PathProfile::travellingAt(double distance_m) const {
+  const auto travels = [](const ProfileEntry& entry) { return entry.velocity.forward != 0.0; };
+  const auto here = entryAt(distance_m);
+  const auto next = std::find_if(here, entries_.end(), travels);
+  if (next != entries_.end()) {
+    return next->velocity;
+  }
+  const auto last = std::find_if(entries_.rbegin(), entries_.rend(), travels);
+  return last == entries_.rend() ? Velocity{} : last->velocity;
 }
 
 }  // namespace perennial

@@ -36,10 +36,18 @@ class PathProfile {
   /// Zero for an empty profile.
   Velocity at(double distance_m) const;
 
+  /// Velocity to repeat at this distance: as `at()`, but a stop (no forward velocity) is passed over. It gives the next
+  /// velocity that travels, at the end of the path the last one: a robot that stands does not reach the distance at
+  /// which it was taught to go on. Zero only if nothing in the profile travels.
+  Velocity travellingAt(double distance_m) const;
+
   const std::vector<ProfileEntry>& entries() const { return entries_; }
   bool empty() const { return entries_.empty(); }
 
  private:
+  /// The entry that holds at this distance; end() for an empty profile.
+  std::vector<ProfileEntry>::const_iterator entryAt(double distance_m) const;
+
   std::vector<ProfileEntry> entries_;
 };
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <ros/ros.h>
+
+#include "perennial_nav/BeginTraversalResponse.h"
+
+namespace perennial {
+
+/// The navigator's side of the conversation with map_manager: opens and ends traversals and counts the registrations
+/// that the manager has to wait for. Calls block until the manager answers. Throws MapError with the manager's reason,
+/// or when no manager answers.
+class TraversalClient {
+ public:
+  explicit TraversalClient(ros::NodeHandle nh);
+
+  perennial_nav::BeginTraversalResponse begin(const std::string& map, double start_m, const ros::Time& stamp);
+  /// Nothing happens when no traversal is open. Returns how many local maps learned something.
+  std::uint32_t end(bool commit, const ros::Time& stamp);
+
+  void countRegistration() { ++registrations_; }
+  bool open() const { return open_; }
+  /// Identifies the open traversal; local maps of any other one are stale.
+  std::uint32_t id() const { return id_; }
+
+ private:
+  ros::ServiceClient begin_;
+  ros::ServiceClient end_;
+  bool open_ = false;
+  std::uint32_t id_ = 0;
+  std::uint32_t registrations_ = 0;
+};
+
+}  // namespace perennial

@@ -1,0 +1,56 @@
+#include "perennial/core/active_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace perennial {
+
+ActiveRegistration registerView(const HistogramRegistration& registration, const ActiveMap& map,
+                                const FeatureSet& view) {
+  ActiveRegistration best;
+  for (std::size_t k = 0; k < map.alternatives.size(); ++k) {
+    RegistrationResult result = registration.registerView(map.alternatives[k].features, view);
+    if (k == 0 || result.inliers > best.result.inliers) {
+      best = {k, std::move(result)};
+    }
+  }
+  return best;
+}
+
+void ActiveMapWindow::reset(std::size_t path_size) {
+  path_size_ = path_size;
+  maps_.clear();
+}
+
+void ActiveMapWindow::add(ActiveMap map) {
+  if (!maps_.empty() && map.index >= maps_.front().index && map.index <= maps_.back().index) {
+    maps_[map.index - maps_.front().index] = std::move(map);
+    return;
+  }
+  if (!maps_.empty() && map.index != maps_.back().index + 1) {
+    maps_.clear();
+  }
+  maps_.push_back(std::move(map));
+}
+
+const ActiveMap* ActiveMapWindow::nearest(double distance_m) const {
+  if (maps_.empty()) {
+    return nullptr;
+  }
+  const auto best = std::min_element(maps_.begin(), maps_.end(), [&](const ActiveMap& a, const ActiveMap& b) {
+    return std::abs(a.distance_m - distance_m) < std::abs(b.distance_m - distance_m);
+  });
+  const bool may_be_nearer_before = best == maps_.begin() && best->index > 0 && distance_m < best->distance_m;
+  const bool may_be_nearer_after =
+      best == std::prev(maps_.end()) && best->index + 1 < path_size_ && distance_m > best->distance_m;
+  return may_be_nearer_before || may_be_nearer_after ? nullptr : &*best;
+}
+
+void ActiveMapWindow::forgetBefore(double distance_m, double keep_m) {
+  while (maps_.size() > 1 && maps_.front().distance_m < distance_m - keep_m) {
+    maps_.pop_front();
+  }
+}
+
+}  // namespace perennial

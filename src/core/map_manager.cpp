@@ -1,0 +1,145 @@
+#include "perennial/core/map_manager.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "perennial/core/error.h"
+
+namespace perennial {
+namespace {
+
+/// Observations of a local map are complete when the robot registers against one this many places further on: distance
+/// estimates may waver between neighbours.
+constexpr std::uint32_t kPlacesUntilLearned = 2;
+
+}  // namespace
+
+MapManagerSettings MapManagerSettings::load(ParameterReader& reader) {
+  MapManagerSettings settings;
+  settings.lookahead_m = reader.real("lookahead_m", settings.lookahead_m, 0.1, 1000.0);
+  settings.lookbehind_m = reader.real("lookbehind_m", settings.lookbehind_m, 0.0, 1000.0);
+  settings.min_inliers_for_update =
+      reader.integer("min_inliers_for_update", settings.min_inliers_for_update, 1, 10000);
+  return settings;
+}
+
+MapManager::MapManager(MapFile file, std::shared_ptr<const MapStrategy> strategy, const MapManagerSettings& settings)
+    : file_(std::move(file)), strategy_(std::move(strategy)), settings_(settings) {}
+
+void MapManager::beginTraversal(double stamp_s) {
+  if (in_traversal_) {
+    endTraversal(false, stamp_s);
+  }
+  file_.beginTraversal(numbersOwner(*strategy_), stamp_s);
+  in_traversal_ = true;
+  stamp_s_ = stamp_s;
+  handed_out_any_ = false;
+  pending_.clear();
+  learned_before_ = 0;
+  updated_ = 0;
+}
+
+std::vector<std::uint32_t> MapManager::due(double distance_m) {
+  const auto places = file_.between(distance_m - settings_.lookbehind_m, distance_m + settings_.lookahead_m);
+  const std::uint32_t here = file_.nearest(distance_m).index;
+  const auto last = static_cast<std::uint32_t>(file_.size()) - 1;
+  std::uint32_t to = std::min(here + 2, last);
+  std::uint32_t from = here == 0 ? 0 : here - 1;
+  if (!places.empty()) {
+    to = std::max(to, places.back().index);
+    from = std::min(from, places.front().index);
+  }
+  if (handed_out_any_ && next_due_ >= from) {
+    from = next_due_;
+  }
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t index = from; index <= to; ++index) {
+    indices.push_back(index);
+  }
+  if (!indices.empty()) {
+    handed_out_any_ = true;
+    next_due_ = to + 1;
+  }
+  return indices;
+}
+
+LocalMap MapManager::readForStrategy(std::uint32_t index) const {
+  LocalMap map = file_.read(index);
+  map.adopt(numbersOwner(*strategy_), strategy_->numbersPerFeature());
+  return map;
+}
+
+ActiveMap MapManager::activeMap(std::uint32_t index) const {
+  const LocalMap map = readForStrategy(index);
+  ActiveMap active;
+  active.index = index;
+  active.distance_m = map.distance_m;
+  for (const std::vector<std::size_t>& selected : strategy_->alternatives(map, stamp_s_)) {
+    ActiveMap::Alternative alternative;
+    alternative.features.reserve(selected.size());
+    for (const std::size_t i : selected) {
+      alternative.features.add(map.features.keypoints.at(i), map.features.descriptors.at(i));
+      alternative.positions.push_back(static_cast<std::uint32_t>(i));
+    }
+    active.alternatives.push_back(std::move(alternative));
+  }
+  return active;
+}
+
+void MapManager::observe(std::uint32_t index, Observation observation) {
+  if (!in_traversal_ || index >= file_.size()) {
+    throw Error("an observation of local map " + std::to_string(index) + " outside of a traversal of " +
+                file_.metadata().name);
+  }
+  if (index >= kPlacesUntilLearned) {
+    learn(index - kPlacesUntilLearned + 1);
+  }
+  const bool teaches = observation.registration.displacement_px.has_value() &&
+                       observation.registration.inliers >= settings_.min_inliers_for_update;
+  if (!teaches || index < learned_before_) {
+    return;
+  }
+  const double offset_m = std::abs(observation.distance_m - file_.nearest(observation.distance_m).distance_m);
+  const auto known = pending_.find(index);
+  if (known == pending_.end() || offset_m < known->second.offset_m) {
+    pending_[index] = {std::move(observation), offset_m};
+  }
+}
+
+void MapManager::learn(std::uint32_t before_index) {
+  while (!pending_.empty() && pending_.begin()->first < before_index) {
+    const auto& [index, pending] = *pending_.begin();
+    LocalMap map = readForStrategy(index);
+    strategy_->update(map, pending.observation);
+    const std::string problem = map.problem();
+    if (!problem.empty()) {
+      throw Error("strategy " + strategy_->name() + " broke local map " + std::to_string(index) + ": " + problem);
+    }
+    file_.stage(map);
+    ++updated_;
+    pending_.erase(pending_.begin());
+  }
+  learned_before_ = std::max(learned_before_, before_index);
+}
+
+std::size_t MapManager::endTraversal(bool commit, double stamp_s) {
+  if (!in_traversal_) {
+    throw Error("no traversal of " + file_.metadata().name + " to end");
+  }
+  in_traversal_ = false;
+  if (!commit) {
+    file_.discardTraversal();
+    return 0;
+  }
+  try {
+    learn();
+  } catch (...) {
+    file_.discardTraversal();
+    throw;
+  }
+  file_.commitTraversal(stamp_s);
+  return updated_;
+}
+
+}  // namespace perennial

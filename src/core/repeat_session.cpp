@@ -1,0 +1,77 @@
+#include "perennial/core/repeat_session.h"
+
+#include <utility>
+
+#include "perennial/core/error.h"
+
+namespace perennial {
+namespace {
+
+/// Local maps this far behind the robot are no longer needed.
+constexpr double kKeepBehind_m = 2.0;
+
+}  // namespace
+
+RepeatSession::RepeatSession(const MapMetadata& map, const PathProfile& profile, std::size_t local_maps,
+                             const RepeatSettings& settings)
+    : map_(map),
+      profile_(profile),
+      local_maps_(local_maps),
+      length_m_(map.length_m),
+      extractor_(settings.extraction),
+      registration_(settings.registration),
+      steering_(settings.steering) {
+  requireSameExtraction(map, settings.extraction.describe());
+}
+
+void RepeatSession::beginTraversal(double start_m, std::optional<double> travelled_m) {
+  start_m_ = start_m;
+  start_travelled_m_ = travelled_m;
+  window_.reset(local_maps_);
+}
+
+void RepeatSession::requireSuitable(const cv::Mat& image, const std::string& encoding) const {
+  if (image.cols == map_.image_width && image.rows == map_.image_height && encoding == map_.image_encoding) {
+    return;
+  }
+  const auto kind = [](int width, int height, const std::string& name) {
+    return std::to_string(width) + "x" + std::to_string(height) + " " + name;
+  };
+  throw ImageError("an image of " + kind(image.cols, image.rows, encoding) + ", but map '" + map_.name +
+                   "' was taught with " + kind(map_.image_width, map_.image_height, map_.image_encoding) +
+                   "; set the camera as it was when teaching");
+}
+
+NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv::Mat& image) {
+  if (!start_travelled_m_) {
+    start_travelled_m_ = travelled_m;
+  }
+  NavigationStep step;
+  step.stamp_s = stamp_s;
+  step.distance_m = distance(travelled_m);
+  const ActiveMap* map = window_.nearest(step.distance_m);
+  if (map == nullptr) {
+    throw Error("no local map of '" + map_.name + "' at " + std::to_string(step.distance_m) + " m");
+  }
+  step.local_map = map->index;
+  step.local_map_distance_m = map->distance_m;
+  step.view = extractor_.extract(image);
+  step.registration = registerView(registration_, *map, step.view);
+  step.positions = map->alternatives[step.registration.alternative].positions;
+  step.velocity = steer(profile_.travellingAt(step.distance_m), step.registration.result.displacement_px,
+                        focal_length_px_, steering_);
+  window_.forgetBefore(step.distance_m, kKeepBehind_m);
+  return step;
+}
+
+Observation observationOf(const NavigationStep& step) {
+  Observation observation;
+  observation.view = step.view;
+  observation.registration = step.registration.result;
+  observation.used.assign(step.positions.begin(), step.positions.end());
+  observation.stamp_s = step.stamp_s;
+  observation.distance_m = step.distance_m;
+  return observation;
+}
+
+}  // namespace perennial

@@ -1,0 +1,55 @@
+#include "perennial/ros/reconfigure.h"
+
+namespace perennial {
+
+void toConfig(const ExtractionSettings& settings, perennial_nav::ExtractionConfig& config) {
+  config.features = settings.features;
+  config.octaves = settings.octaves;
+  config.layers = settings.layers;
+  config.min_response = settings.min_response;
+}
+
+void toConfig(const RegistrationSettings& settings, perennial_nav::RegistrationConfig& config) {
+  config.ratio = settings.ratio;
+  config.max_vertical_px = settings.max_vertical_px;
+  config.bin_width_px = settings.bin_width_px;
+  config.min_inliers = settings.min_inliers;
+}
+
+void toConfig(const SteeringSettings& settings, perennial_nav::SteeringConfig& config) {
+  config.gain_per_rad = settings.gain_per_rad;
+  config.gain_per_px = settings.gain_per_px;
+  config.max_correction = settings.max_correction;
+  config.max_forward = settings.max_forward;
+  config.max_angular = settings.max_angular;
+}
+
+ExtractionSettings fromConfig(const perennial_nav::ExtractionConfig& config) {
+  ExtractionSettings settings;
+  settings.features = config.features;
+  settings.octaves = config.octaves;
+  settings.layers = config.layers;
+  settings.min_response = config.min_response;
+  return settings;
+}
+
+RegistrationSettings fromConfig(const perennial_nav::RegistrationConfig& config) {
+  RegistrationSettings settings;
+  settings.ratio = config.ratio;
+  settings.max_vertical_px = config.max_vertical_px;
+  settings.bin_width_px = config.bin_width_px;
+  settings.min_inliers = config.min_inliers;
+  return settings;
+}
+
+SteeringSettings fromConfig(const perennial_nav::SteeringConfig& config) {
+  SteeringSettings settings;
+  settings.gain_per_rad = config.gain_per_rad;
+  settings.gain_per_px = config.gain_per_px;
+  settings.max_correction = config.max_correction;
+  settings.max_forward = config.max_forward;
+  settings.max_angular = config.max_angular;
+  return settings;
+}
+
+}  // namespace perennial
