@@ -1,9 +1,31 @@
+#include <limits>
 #include <locale>
 #include <sstream>
 
 #include "perennial/core/feature_extractor.h"
 
 namespace perennial {
+namespace {
+
+/// The shortest decimal text that reads back as the same number.
+std::string exactText(double value) {
+  std::string text;
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    std::stringstream stream;
+    stream.imbue(std::locale::classic());
+    stream.precision(digits);
+    stream << value;
+    text = stream.str();
+    double read = 0.0;
+    stream >> read;
+    if (read == value) {
+      break;
+    }
+  }
+  return text;
+}
+
+}  // namespace
 
 ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
   ExtractionSettings settings;
@@ -15,12 +37,8 @@ ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
 }
 
 std::string ExtractionSettings::describe() const {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(17);  // every double has a text of its own
-  text << "surf-brief/1 features=" << features << " octaves=" << octaves << " layers=" << layers
-       << " min_response=" << min_response;
-  return text.str();
+  return "surf-brief/1 features=" + std::to_string(features) + " octaves=" + std::to_string(octaves) +
+         " layers=" + std::to_string(layers) + " min_response=" + exactText(min_response);
 }
 
 }  // namespace perennial

@@ -6,9 +6,21 @@
 #include "perennial/core/error.h"
 
 namespace perennial {
+namespace {
+
+/// Settings that were not loaded are held against the same ranges.
+ExtractionSettings checked(const ExtractionSettings& settings) {
+  ParameterReader reader({{"features", settings.features},
+                          {"octaves", settings.octaves},
+                          {"layers", settings.layers},
+                          {"min_response", settings.min_response}});
+  return ExtractionSettings::load(reader);
+}
+
+}  // namespace
 
 struct FeatureExtractor::Implementation {
-  explicit Implementation(const ExtractionSettings& chosen) : settings(chosen), detector(chosen) {}
+  explicit Implementation(const ExtractionSettings& chosen) : settings(checked(chosen)), detector(settings) {}
 
   ExtractionSettings settings;
   IntegralImage integral;

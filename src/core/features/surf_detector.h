@@ -28,6 +28,9 @@ class SurfDetector {
   /// The reference is valid until the next call.
   const std::vector<Keypoint>& detect(const IntegralImage& integral, const PatchMargin& margin);
 
+  /// Where the search of the next image starts.
+  float threshold() const { return threshold_; }
+
  private:
   void findCandidates(float threshold, const IntegralImage& integral, const PatchMargin& margin);
   void selectStrongest(const IntegralImage& integral);
