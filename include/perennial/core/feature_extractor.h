@@ -15,7 +15,10 @@ struct ExtractionSettings {
   int features = 500;           ///< N: described features wanted per image, the strongest ones
   int octaves = 4;              ///< octaves of the scale space
   int layers = 3;               ///< layers per octave in which maxima are sought
-  double min_response = 1e-6;   ///< features weaker than this are never used, however few there are
+  /// Features weaker than this are never used, however few there are. The default is about the strongest response of
+  /// white noise with a deviation of 2 grey levels, so that a dark image does not fill up with noise; the weakest of
+  /// 500 features of an image in daylight has some 100 times more.
+  double min_response = 3e-6;
 
   /// Keys as the members are called. Throws ParameterError.
   static ExtractionSettings load(ParameterReader& reader);
@@ -31,6 +34,7 @@ struct ExtractionSettings {
 /// responses by y, then x, then scale. One instance serves one thread; buffers are kept between calls.
 class FeatureExtractor {
  public:
+  /// Throws ParameterError for settings that `ExtractionSettings::load` would refuse.
   explicit FeatureExtractor(const ExtractionSettings& settings = {});
   ~FeatureExtractor();
   FeatureExtractor(FeatureExtractor&&) noexcept;

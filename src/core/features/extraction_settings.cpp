@@ -1,0 +1,44 @@
+#include <limits>
+#include <locale>
+#include <sstream>
+
+#include "perennial/core/feature_extractor.h"
+
+namespace perennial {
+namespace {
+
+/// The shortest decimal text that reads back as the same number.
+std::string exactText(double value) {
+  std::string text;
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    std::stringstream stream;
+    stream.imbue(std::locale::classic());
+    stream.precision(digits);
+    stream << value;
+    text = stream.str();
+    double read = 0.0;
+    stream >> read;
+    if (read == value) {
+      break;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
+  ExtractionSettings settings;
+  settings.features = reader.integer("features", settings.features, 1, 10000);
+  settings.octaves = reader.integer("octaves", settings.octaves, 1, 6);
+  settings.layers = reader.integer("layers", settings.layers, 1, 6);
+  settings.min_response = reader.real("min_response", settings.min_response, 0.0, 1.0);
+  return settings;
+}
+
+std::string ExtractionSettings::describe() const {
+  return "surf-brief/1 features=" + std::to_string(features) + " octaves=" + std::to_string(octaves) +
+         " layers=" + std::to_string(layers) + " min_response=" + exactText(min_response);
+}
+
+}  // namespace perennial
