@@ -2,14 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "perennial/core/error.h"
 
 namespace perennial {
+namespace {
+
+bool isFinite(double distance_m, const Velocity& velocity) {
+  return std::isfinite(distance_m) && std::isfinite(velocity.forward) && std::isfinite(velocity.angular) &&
+         std::isfinite(velocity.flipper);
+}
+
+}  // namespace
+
+PathProfile PathProfile::fromEntries(std::vector<ProfileEntry> entries) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const bool rises = i == 0 || entries[i].distance_m > entries[i - 1].distance_m;
+    if (!rises || !isFinite(entries[i].distance_m, entries[i].velocity)) {
+      throw Error("path profile: entry " + std::to_string(i) + " is not finite or not after the one before");
+    }
+  }
+  PathProfile profile;
+  profile.entries_ = std::move(entries);
+  return profile;
+}
 
 void PathProfile::add(double distance_m, const Velocity& velocity) {
-  if (!std::isfinite(distance_m) || !std::isfinite(velocity.forward) || !std::isfinite(velocity.angular) ||
-      !std::isfinite(velocity.flipper)) {
+  if (!isFinite(distance_m, velocity)) {
     throw Error("path profile: entry " + std::to_string(entries_.size()) + " has a value that is not finite");
   }
   if (!entries_.empty()) {

@@ -27,6 +27,10 @@ struct MapMetadata {
   double length_m = 0.0;       ///< length of the taught path; at least the last local map's distance
 };
 
+/// Throws MapError, with both settings and what to do, unless the map was taught with `wanted`
+/// (ExtractionSettings::describe()): features of other settings cannot be matched.
+void requireSameExtraction(const MapMetadata& metadata, const std::string& wanted);
+
 /// One traversal that the map has learned from. Traversal 0 is the teaching.
 struct TraversalInfo {
   std::uint32_t id = 0;
@@ -43,7 +47,9 @@ struct LocalMapPlace {
 };
 
 /// Writes a newly taught map. Everything goes to `<file>.partial`; only finish() makes `<file>` appear, complete and in
-/// one step, so that a half-taught map is never taken for a whole one. One thread. Throws MapError.
+/// one step, so that a half-taught map is never taken for a whole one. A partial file that a crash left behind is
+/// replaced; one that is being written at this moment is refused. Memory does not grow with the path. One thread.
+/// Throws MapError.
 class MapWriter {
  public:
   /// Creates missing folders. Refuses an existing `file` unless `overwrite`; the old one stays until finish().
@@ -53,10 +59,13 @@ class MapWriter {
   MapWriter(MapWriter&&) noexcept;
   MapWriter& operator=(MapWriter&&) = delete;
 
-  /// `map.index` must be the number of maps added before, distances must not fall. `image`: CV_8UC1, stored as PNG.
+  /// `map.index` must be the number of maps added before, distances must not fall. `image`: CV_8UC1 of the metadata's
+  /// size, stored as PNG; anything else is an ImageError.
   void add(const LocalMap& map, const cv::Mat& image);
 
   /// Stores the profile and the length, syncs, and renames to the final name. A map without local maps is refused.
+  /// When only the name cannot be given (it is taken meanwhile, or the map to be replaced is in use), the complete map
+  /// stays in the partial file, the error says so, and finish() may be called again.
   void finish(const PathProfile& profile, double length_m);
 
   std::size_t size() const;  ///< local maps added
@@ -70,7 +79,9 @@ class MapWriter {
 /// length of the path. Every blob carries a checksum, tested on reading.
 ///
 /// Changes are staged by a traversal and appear in one transaction, commitTraversal(). States of earlier traversals are
-/// kept, the taught state always. One thread at a time; several readers of one file are fine, one writer.
+/// kept, the taught state always. One thread at a time. Any number of programs may read one file; one may have a
+/// traversal open, which is an SQLite RESERVED lock on the file: the second is refused, readers go on, and the lock
+/// goes with its process.
 /// Throws MapError, with the file's name and what to do, for a file that is missing, no map, damaged, or of another
 /// format version.
 class MapFile {
@@ -85,7 +96,7 @@ class MapFile {
   const PathProfile& profile() const;
   std::size_t size() const;  ///< number of local maps
 
-  /// Local map `index`, in its newest committed or staged state; or in the state after traversal `traversal`.
+  /// Local map `index`, in its newest committed or staged state; or in the committed state after `traversal`.
   LocalMap read(std::uint32_t index) const;
   LocalMap readAt(std::uint32_t index, std::uint32_t traversal) const;
   /// The taught image, decoded (CV_8UC1), or as the stored PNG.
@@ -100,15 +111,18 @@ class MapFile {
   /// Traversals in order; the first is the teaching.
   std::vector<TraversalInfo> traversals() const;
 
-  /// Opens a traversal: what is staged from now on belongs to it. Another open one is an error. Returns its id.
+  /// Opens a traversal: what is staged from now on belongs to it. Returns its id. An error when one is open already,
+  /// here or in another program, and where the file cannot be written.
   std::uint32_t beginTraversal(const std::string& strategy, double start_stamp_s);
   /// New state of a local map; replaces an earlier one staged for it. read() sees it at once, the file does not.
+  /// Index, distance and stamp must be those of the taught one. Staged states wait on disk, not in memory.
   void stage(const LocalMap& map);
-  /// All of the traversal or nothing. Without anything staged, no traversal is recorded.
+  /// All of the traversal or nothing. Without anything staged, no traversal is recorded. After an error (disk full)
+  /// the file is as it was and the traversal still open: commit again, or discard it.
   void commitTraversal(double end_stamp_s);
   void discardTraversal();
 
-  /// Forgets every traversal after `traversal`.
+  /// Forgets every traversal after `traversal`. Not while a traversal is open.
   void rollback(std::uint32_t traversal);
 
   /// Reads everything and returns what is wrong, empty when nothing is.

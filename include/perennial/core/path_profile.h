@@ -27,6 +27,9 @@ struct ProfileEntry {
 /// The taught velocities as a step function of the travelled distance.
 class PathProfile {
  public:
+  /// Exactly these entries, as they were stored. Throws Error unless all values are finite and distances rise.
+  static PathProfile fromEntries(std::vector<ProfileEntry> entries);
+
   /// Appends an entry unless the velocity is unchanged. Of several entries at one distance the last one holds, so
   /// that a stop on the way does not become a stop for ever. Throws Error for a value that is not finite or a distance
   /// before the last one.
