@@ -87,7 +87,7 @@ ActiveMap MapManager::activeMap(std::uint32_t index) const {
   return active;
 }
 
-void MapManager::observe(std::uint32_t index, Observation observation) {
+void MapManager::observe(std::uint32_t index, double local_map_distance_m, Observation observation) {
   if (!in_traversal_ || index >= file_.size()) {
     throw Error("an observation of local map " + std::to_string(index) + " outside of a traversal of " +
                 file_.metadata().name);
@@ -100,7 +100,7 @@ void MapManager::observe(std::uint32_t index, Observation observation) {
   if (!teaches || index < learned_before_) {
     return;
   }
-  const double offset_m = std::abs(observation.distance_m - file_.nearest(observation.distance_m).distance_m);
+  const double offset_m = std::abs(observation.distance_m - local_map_distance_m);
   const auto known = pending_.find(index);
   if (known == pending_.end() || offset_m < known->second.offset_m) {
     pending_[index] = {std::move(observation), offset_m};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "perennial/core/error.h"
+#include "perennial/core/map_name.h"
 
 namespace perennial {
 namespace {

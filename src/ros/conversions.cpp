@@ -164,11 +164,11 @@ PathProfile fromMessage(const perennial_nav::PathProfile& message) {
   const std::size_t n = message.distance_m.size();
   require(message.forward.size() == n && message.angular.size() == n && message.flipper.size() == n,
           "the arrays of a path profile differ in length");
-  PathProfile profile;
+  std::vector<ProfileEntry> entries;
   for (std::size_t i = 0; i < n; ++i) {
-    profile.add(message.distance_m[i], {message.forward[i], message.angular[i], message.flipper[i]});
+    entries.push_back({message.distance_m[i], {message.forward[i], message.angular[i], message.flipper[i]}});
   }
-  return profile;
+  return PathProfile::fromEntries(std::move(entries));
 }
 
 MapMetadata metadataFromMessage(const perennial_nav::BeginTraversalResponse& message, const std::string& name) {

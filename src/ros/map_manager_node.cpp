@@ -149,7 +149,7 @@ void MapManagerNode::onRegistration(const perennial_nav::RegistrationConstPtr& m
 }
 
 void MapManagerNode::learn(const perennial_nav::Registration& message) {
-  manager_->observe(message.local_map, observationFromMessage(message));
+  manager_->observe(message.local_map, message.local_map_distance_m, observationFromMessage(message));
 }
 
 bool MapManagerNode::onEnd(perennial_nav::EndTraversalRequest& request, perennial_nav::EndTraversalResponse& response) {

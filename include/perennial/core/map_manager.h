@@ -39,8 +39,9 @@ class MapManager {
   /// A local map as it is used in this traversal.
   ActiveMap activeMap(std::uint32_t index) const;
 
-  /// What was seen near local map `index`. Observations without a displacement, or with too few inliers, are ignored.
-  void observe(std::uint32_t index, Observation observation);
+  /// What was seen near local map `index`, which lies at `local_map_distance_m`. Observations without a displacement, or
+  /// with too few inliers, are ignored.
+  void observe(std::uint32_t index, double local_map_distance_m, Observation observation);
 
   /// Learns from what is still pending and stores everything (`commit`) or forgets it. Returns how many local maps
   /// changed.

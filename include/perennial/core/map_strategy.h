@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -48,6 +49,10 @@ class MapStrategy {
 
   /// How many numbers it keeps about each feature.
   virtual std::size_t numbersPerFeature() const { return 0; }
+
+  /// The most features a local map may come to hold that was taught with `taught` ones and learns from views of at
+  /// most `seen`. By default a map does not outgrow them. Memory is bounded by this: it must not grow without end.
+  virtual std::size_t maxFeatures(std::size_t taught, std::size_t seen) const { return std::max(taught, seen); }
 
   /// Features to use at this time. By default all, as a single alternative.
   virtual Alternatives alternatives(const LocalMap& map, double stamp_s) const;

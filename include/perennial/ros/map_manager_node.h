@@ -14,6 +14,7 @@
 #include "perennial/ros/strategy_loader.h"
 #include "perennial_nav/BeginTraversal.h"
 #include "perennial_nav/EndTraversal.h"
+#include "perennial_nav/LocalMap.h"
 #include "perennial_nav/Registration.h"
 
 namespace perennial {

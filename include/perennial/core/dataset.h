@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace perennial {
+
+/// One image of a data set: what a traversal saw at a place.
+struct DatasetRow {
+  std::string traversal;    ///< name of the run; names sort in time order within a place
+  double stamp_s = 0.0;     ///< when it was taken, seconds since 1970
+  double distance_m = 0.0;  ///< the place on the path
+  std::string image;        ///< file, with the data set's folder
+  double offset_px =
+      0.0;  ///< horizontal position of the scene in the image, relative to a reference of the place
+  std::size_t line = 0;  ///< line of the manifest, from 1
+};
+
+/// Images of the same places across time, with ground truth. A place is identified by its distance; image
+/// size and time order belong to a place, since places may come from different cameras.
+struct Dataset {
+  std::string manifest;          ///< file, for messages
+  std::vector<DatasetRow> rows;  ///< by traversal name, then distance
+
+  /// Names of the traversals, sorted.
+  std::vector<std::string> traversals() const;
+
+  /// The images of one traversal, by distance. Throws DatasetError naming the traversals there are for an
+  /// unknown one.
+  std::vector<DatasetRow> traversal(const std::string& name) const;
+
+  /// The images of each place, in order of the traversals' names, keyed by distance.
+  std::map<double, std::vector<DatasetRow>> places() const;
+
+  /// The image of a row, CV_8UC1. Throws DatasetError naming manifest, line and image when it cannot be read.
+  cv::Mat readImage(const DatasetRow& row) const;
+};
+
+/// Displacement x_map - x_view between an image taken as the map and one of the same place taken as the view.
+inline double groundTruthDisplacement(const DatasetRow& map, const DatasetRow& view) {
+  return map.offset_px - view.offset_px;
+}
+
+/// Reads `folder`/manifest.csv with the columns traversal, stamp (ISO 8601, UTC), distance_m, image (relative
+/// to the folder), offset_px, in any order; others are ignored. Throws DatasetError naming file and line for:
+/// a missing column or file, a field that is no number or time, a negative distance, a place listed twice in
+/// a traversal, time that goes backwards within a place, no rows. Images are not opened.
+Dataset loadDataset(const std::string& folder);
+
+}  // namespace perennial

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <csignal>
+#include <exception>
+#include <string>
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+namespace perennial {
+
+inline volatile std::sig_atomic_t g_stop_requested = 0;
+
+/// Runs a node until Ctrl-C, SIGTERM or a shutdown by the master, and destroys it while its connections still live, so
+/// that what it does last (stop the robot, finish the map) reaches the others. Exit status 1 when it cannot start.
+template <typename Node>
+int runNode(int argc, char** argv, const std::string& name) {
+  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  std::signal(SIGINT, [](int) { g_stop_requested = 1; });
+  std::signal(SIGTERM, [](int) { g_stop_requested = 1; });
+  try {
+    ros::NodeHandle nh;
+    {
+      Node node(nh, ros::NodeHandle("~"));
+      while (ros::ok() && g_stop_requested == 0) {
+        ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+      }
+    }
+    ros::WallDuration(0.1).sleep();  // lets the last messages leave; roscpp has no call that waits for them
+    ros::shutdown();
+    return 0;
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    ros::shutdown();
+    return 1;
+  }
+}
+
+}  // namespace perennial
