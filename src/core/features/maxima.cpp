@@ -16,7 +16,8 @@ struct Triple {
 
 /// Row `j` of a layer with its neighbours.
 struct Rows {
-  Rows(const ResponseLayer& layer, int j) : up(layer.row(j - 1)), here(layer.row(j)), down(layer.row(j + 1)) {}
+  Rows(const ResponseLayer& layer, int j)
+      : up(layer.row(j - 1)), here(layer.row(j)), down(layer.row(j + 1)) {}
 
   const float* up;
   const float* here;
@@ -26,15 +27,16 @@ struct Rows {
 float greatestOfThree(const float* row, int i) { return std::max({row[i - 1], row[i], row[i + 1]}); }
 
 float greatestOfNine(const Rows& rows, int i) {
-  return std::max({greatestOfThree(rows.up, i), greatestOfThree(rows.here, i), greatestOfThree(rows.down, i)});
+  return std::max(
+      {greatestOfThree(rows.up, i), greatestOfThree(rows.here, i), greatestOfThree(rows.down, i)});
 }
 
 /// Not less than the neighbours that come before it, greater than those that come after it.
 bool isMaximum(const Rows& below, const Rows& centre, const Rows& above, int i) {
   const float value = centre.here[i];
-  return value >= centre.here[i - 1] && value > centre.here[i + 1] && value >= greatestOfThree(centre.up, i) &&
-         value > greatestOfThree(centre.down, i) && value >= greatestOfNine(below, i) &&
-         value > greatestOfNine(above, i);
+  return value >= centre.here[i - 1] && value > centre.here[i + 1] &&
+         value >= greatestOfThree(centre.up, i) && value > greatestOfThree(centre.down, i) &&
+         value >= greatestOfNine(below, i) && value > greatestOfNine(above, i);
 }
 
 void findInRow(const Triple& layers, float threshold, Maximum where, std::vector<Maximum>& maxima) {
