@@ -39,15 +39,41 @@ bool isMaximum(const Rows& below, const Rows& centre, const Rows& above, int i) 
          value >= greatestOfNine(below, i) && value > greatestOfNine(above, i);
 }
 
+/// Samples looked at together. Nearly all such blocks can be passed over at once.
+constexpr int kBlock = 16;
+
+/// False when none of the samples i..i+kBlock-1 exceeds the threshold and its four neighbours in the layer.
+/// Without a branch, so that it is vectorised.
+bool mayHoldMaximum(const Rows& rows, int i, float threshold) {
+  const float* const up = rows.up + i;
+  const float* const here = rows.here + i;
+  const float* const down = rows.down + i;
+  unsigned any = 0;
+  for (int k = 0; k < kBlock; ++k) {
+    const float value = here[k];
+    // One mask from the greatest neighbour on either side of the order, not a chain of && that would branch.
+    const float earlier = std::max(std::max(here[k - 1], up[k]), threshold);
+    const float later = std::max(here[k + 1], down[k]);
+    any |= static_cast<unsigned>(value >= earlier) & static_cast<unsigned>(value > later);
+  }
+  return any != 0;
+}
+
 void findInRow(const Triple& layers, float threshold, Maximum where, std::vector<Maximum>& maxima) {
   const Rows below(layers.below, where.j);
   const Rows centre(layers.centre, where.j);
   const Rows above(layers.above, where.j);
-  for (int i = layers.above.begin + 1; i < layers.above.columns_end - 1; ++i) {
-    if (centre.here[i] >= threshold && isMaximum(below, centre, above, i)) {
-      where.i = i;
-      where.response = centre.here[i];
-      maxima.push_back(where);
+  const int end = layers.above.columns_end - 1;
+  for (int block = layers.above.begin + 1; block < end; block += kBlock) {
+    if (block + kBlock <= end && !mayHoldMaximum(centre, block, threshold)) {
+      continue;
+    }
+    for (int i = block; i < std::min(block + kBlock, end); ++i) {
+      if (centre.here[i] >= threshold && isMaximum(below, centre, above, i)) {
+        where.i = i;
+        where.response = centre.here[i];
+        maxima.push_back(where);
+      }
     }
   }
 }
