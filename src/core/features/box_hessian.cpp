@@ -50,13 +50,21 @@ FilterRows::FilterRows(const IntegralImage& integral, const BoxFilter& filter, i
 }
 
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept {
+  // Local pointers and one loop per derivative: so the compiler sees that nothing overlaps, and vectorises.
   std::uint32_t* const __restrict xx = differences.xx.data();
   std::uint32_t* const __restrict yy = differences.yy.data();
   std::uint32_t* const __restrict xy = differences.xy.data();
+  const auto [xx0, xx1] = rows.xx;
   for (int x = begin; x < end; ++x) {
-    xx[x] = rows.xx[1][x] - rows.xx[0][x];
-    yy[x] = (rows.yy[3][x] - rows.yy[0][x]) - 3U * (rows.yy[2][x] - rows.yy[1][x]);
-    xy[x] = (rows.xy[1][x] - rows.xy[0][x]) - (rows.xy[3][x] - rows.xy[2][x]);
+    xx[x] = xx1[x] - xx0[x];
+  }
+  const auto [yy0, yy1, yy2, yy3] = rows.yy;
+  for (int x = begin; x < end; ++x) {
+    yy[x] = (yy3[x] - yy0[x]) - 3U * (yy2[x] - yy1[x]);
+  }
+  const auto [xy0, xy1, xy2, xy3] = rows.xy;
+  for (int x = begin; x < end; ++x) {
+    xy[x] = (xy1[x] - xy0[x]) - (xy3[x] - xy2[x]);
   }
 }
 

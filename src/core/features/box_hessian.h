@@ -8,11 +8,11 @@
 
 namespace perennial {
 
-/// Box filters that approximate the second derivatives of a Gaussian (Bay et al., CVIU 2008, section 3.2 and fig. 4).
-/// The smallest one, lobe 3, is 9x9 px and stands for sigma = 1.2.
+/// Box filters that approximate the second derivatives of a Gaussian (Bay et al., CVIU 2008, section 3.2 and
+/// fig. 4). The smallest one, lobe 3, is 9x9 px and stands for sigma = 1.2.
 ///
-/// Dxx: three lobes side by side, each `lobe` wide and 2 lobe - 1 high, weighted 1, -2, 1; Dyy is Dxx transposed;
-/// Dxy: four squares of `lobe` px, one px apart, weighted 1, -1, -1, 1.
+/// Dxx: three lobes side by side, each `lobe` wide and 2 lobe - 1 high, weighted 1, -2, 1; Dyy is Dxx
+/// transposed; Dxy: four squares of `lobe` px, one px apart, weighted 1, -1, -1, 1.
 struct BoxFilter {
   int lobe = 3;  ///< px, odd, at least 3
 
@@ -20,11 +20,12 @@ struct BoxFilter {
   int half() const { return size() / 2; }  ///< px needed on each side of the centre
 };
 
-/// sigma of the Gaussian that a filter of this size (possibly between two filters, hence real) approximates, px.
+/// sigma of the Gaussian that a filter of this size (possibly between two filters, hence real) approximates,
+/// px.
 constexpr float scaleOfFilterSize(float size) { return 1.2F / 9.0F * size; }
 
-/// Differences down the columns of an integral image, for one filter and one image row. Each derivative is then a
-/// few differences along the row: 20 reads for a response instead of 32.
+/// Differences down the columns of an integral image, for one filter and one image row. Each derivative is
+/// then a few differences along the row: 20 reads for a response instead of 32.
 struct ColumnDifferences {
   std::vector<std::uint32_t> xx;
   std::vector<std::uint32_t> yy;
@@ -45,8 +46,9 @@ struct FilterRows {
 /// Fills columns begin..end-1 of `differences`.
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept;
 
-/// Responses det = Dxx Dyy - (0.9 Dxy)^2 at x = begin, begin + step, ..., `count` of them, with the derivatives divided by
-/// the filter's area and by 255 (intensities in [0, 1]). `differences` must cover begin - half .. last + half + 1.
+/// Responses det = Dxx Dyy - (0.9 Dxy)^2 at x = begin, begin + step, ..., `count` of them, with the
+/// derivatives divided by the filter's area and by 255 (intensities in [0, 1]). `differences` must cover
+/// begin - half .. last + half + 1.
 void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int step, int count,
                 float* responses) noexcept;
 

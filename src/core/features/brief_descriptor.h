@@ -12,17 +12,19 @@
 
 namespace perennial {
 
-/// Describes keypoints by 256-bit BRIEF (Calonder et al., ECCV 2010): bit i is set when the smoothed image is darker at
-/// the first place of test i than at the second.
+/// Describes keypoints by 256-bit BRIEF (Calonder et al., ECCV 2010): bit i is set when the smoothed image is
+/// darker at the first place of test i than at the second.
 ///
-/// Patch and pattern are upright and of fixed size, whatever the keypoint's scale, as in the paper: the robot sees a
-/// place again from about the same distance. Places are relative to the pixel nearest to the keypoint. Smoothing is
-/// by a 9x9 box, the usual replacement of the paper's 9x9 Gaussian kernel. One instance serves one thread.
+/// Patch and pattern are upright and of fixed size, whatever the keypoint's scale, as in the paper: the robot
+/// sees a place again from about the same distance. Places are relative to the pixel nearest to the keypoint.
+/// Smoothing is by a 9x9 box, the usual replacement of the paper's 9x9 Gaussian kernel. One instance serves
+/// one thread.
 class BriefDescriptor {
  public:
-  static constexpr int kSmoothing = 9;                                      ///< side of the smoothing box, px
-  static constexpr PatchMargin kMargin{kBriefPatch / 2 + kSmoothing / 2,    ///< the patch and the smoothing around it
-                                       kBriefPatch / 2 - 1 + kSmoothing / 2};
+  static constexpr int kSmoothing = 9;  ///< side of the smoothing box, px
+  static constexpr PatchMargin kMargin{
+      kBriefPatch / 2 + kSmoothing / 2,  ///< the patch and the smoothing around it
+      kBriefPatch / 2 - 1 + kSmoothing / 2};
 
   /// Takes the image that is described from now on. Memory is kept and used again.
   void prepare(const IntegralImage& integral);
@@ -34,7 +36,8 @@ class BriefDescriptor {
   void placePattern();
 
   int columns_ = 0;
-  std::vector<std::uint16_t> smoothed_;  ///< box sums (no division: only comparisons count); edges are not set
+  std::vector<std::uint16_t>
+      smoothed_;  ///< box sums (no division: only comparisons count); edges are not set
   std::array<std::ptrdiff_t, Descriptor::kBits> first_{};  ///< offsets of the tests' places in `smoothed_`
   std::array<std::ptrdiff_t, Descriptor::kBits> second_{};
 };

@@ -4,7 +4,8 @@
 
 namespace perennial {
 
-void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns, std::uint32_t* sums) noexcept {
+void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns,
+                 std::uint32_t* sums) noexcept {
   std::uint32_t row_sum = 0;
   sums[0] = 0;
   for (int x = 0; x < columns; ++x) {

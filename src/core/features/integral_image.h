@@ -2,19 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
-
 #include <opencv2/core.hpp>
+#include <vector>
 
 namespace perennial {
 
 /// Summed-area table of an 8-bit image (Viola and Jones, CVPR 2001; Bay et al., CVIU 2008, section 3.1).
 ///
-/// row(y)[x] is the sum of the pixels above row y and left of column x, so there is one row and one column more than
-/// in the image, and the sum over rows y0..y1-1 and columns x0..x1-1 is
-/// row(y1)[x1] - row(y0)[x1] - row(y1)[x0] + row(y0)[x0].
-/// Arithmetic is modulo 2^32: the table of a huge image may wrap around, its differences are still right for every
-/// box whose sum is below 2^31.
+/// row(y)[x] is the sum of the pixels above row y and left of column x, so there is one row and one column
+/// more than in the image, and the sum over rows y0..y1-1 and columns x0..x1-1 is row(y1)[x1] - row(y0)[x1] -
+/// row(y1)[x0] + row(y0)[x0]. Arithmetic is modulo 2^32: the table of a huge image may wrap around, its
+/// differences are still right for every box whose sum is below 2^31.
 class IntegralImage {
  public:
   /// `image`: CV_8UC1, continuous or not, may be empty. Memory is kept and used again.
@@ -32,6 +30,7 @@ class IntegralImage {
 };
 
 /// One row of the table: `sums[x + 1] = above[x + 1] + pixels[0] + ... + pixels[x]`, and `sums[0] = 0`.
-void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns, std::uint32_t* sums) noexcept;
+void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns,
+                 std::uint32_t* sums) noexcept;
 
 }  // namespace perennial

@@ -16,7 +16,8 @@ struct Triple {
 
 /// Row `j` of a layer with its neighbours.
 struct Rows {
-  Rows(const ResponseLayer& layer, int j) : up(layer.row(j - 1)), here(layer.row(j)), down(layer.row(j + 1)) {}
+  Rows(const ResponseLayer& layer, int j)
+      : up(layer.row(j - 1)), here(layer.row(j)), down(layer.row(j + 1)) {}
 
   const float* up;
   const float* here;
@@ -26,26 +27,53 @@ struct Rows {
 float greatestOfThree(const float* row, int i) { return std::max({row[i - 1], row[i], row[i + 1]}); }
 
 float greatestOfNine(const Rows& rows, int i) {
-  return std::max({greatestOfThree(rows.up, i), greatestOfThree(rows.here, i), greatestOfThree(rows.down, i)});
+  return std::max(
+      {greatestOfThree(rows.up, i), greatestOfThree(rows.here, i), greatestOfThree(rows.down, i)});
 }
 
 /// Not less than the neighbours that come before it, greater than those that come after it.
 bool isMaximum(const Rows& below, const Rows& centre, const Rows& above, int i) {
   const float value = centre.here[i];
-  return value >= centre.here[i - 1] && value > centre.here[i + 1] && value >= greatestOfThree(centre.up, i) &&
-         value > greatestOfThree(centre.down, i) && value >= greatestOfNine(below, i) &&
-         value > greatestOfNine(above, i);
+  return value >= centre.here[i - 1] && value > centre.here[i + 1] &&
+         value >= greatestOfThree(centre.up, i) && value > greatestOfThree(centre.down, i) &&
+         value >= greatestOfNine(below, i) && value > greatestOfNine(above, i);
+}
+
+/// Samples looked at together. Nearly all such blocks can be passed over at once.
+constexpr int kBlock = 16;
+
+/// False when none of the samples i..i+kBlock-1 exceeds the threshold and its four neighbours in the layer.
+/// Without a branch, so that it is vectorised.
+bool mayHoldMaximum(const Rows& rows, int i, float threshold) {
+  const float* const up = rows.up + i;
+  const float* const here = rows.here + i;
+  const float* const down = rows.down + i;
+  unsigned any = 0;
+  for (int k = 0; k < kBlock; ++k) {
+    const float value = here[k];
+    // One mask from the greatest neighbour on either side of the order, not a chain of && that would branch.
+    const float earlier = std::max(std::max(here[k - 1], up[k]), threshold);
+    const float later = std::max(here[k + 1], down[k]);
+    any |= static_cast<unsigned>(value >= earlier) & static_cast<unsigned>(value > later);
+  }
+  return any != 0;
 }
 
 void findInRow(const Triple& layers, float threshold, Maximum where, std::vector<Maximum>& maxima) {
   const Rows below(layers.below, where.j);
   const Rows centre(layers.centre, where.j);
   const Rows above(layers.above, where.j);
-  for (int i = layers.above.begin + 1; i < layers.above.columns_end - 1; ++i) {
-    if (centre.here[i] >= threshold && isMaximum(below, centre, above, i)) {
-      where.i = i;
-      where.response = centre.here[i];
-      maxima.push_back(where);
+  const int end = layers.above.columns_end - 1;
+  for (int block = layers.above.begin + 1; block < end; block += kBlock) {
+    if (block + kBlock <= end && !mayHoldMaximum(centre, block, threshold)) {
+      continue;
+    }
+    for (int i = block; i < std::min(block + kBlock, end); ++i) {
+      if (centre.here[i] >= threshold && isMaximum(below, centre, above, i)) {
+        where.i = i;
+        where.response = centre.here[i];
+        maxima.push_back(where);
+      }
     }
   }
 }

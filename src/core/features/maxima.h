@@ -19,14 +19,14 @@ struct Maximum {
 
 /// Appends every maximum with response >= `threshold` (which must be positive), octave by octave.
 ///
-/// Of two neighbours that are exactly equal the one that comes later (in scale, then y, then x) is the maximum, so
-/// that a blob centred between samples is found, once. Only samples count whose filters in all three layers lie within
-/// the image.
+/// Of two neighbours that are exactly equal the one that comes later (in scale, then y, then x) is the
+/// maximum, so that a blob centred between samples is found, once. Only samples count whose filters in all
+/// three layers lie within the image.
 void findMaxima(const HessianPyramid& pyramid, float threshold, std::vector<Maximum>& maxima);
 
-/// Position and scale of the extremum of the quadratic through the 27 responses around a maximum (Brown and Lowe, BMVC
-/// 2002). None when it lies a whole sample or more away in any direction, or when there is none: then the responses are
-/// no blob. The keypoint keeps the sample's response.
+/// Position and scale of the extremum of the quadratic through the 27 responses around a maximum (Brown and
+/// Lowe, BMVC 2002). None when it lies a whole sample or more away in any direction, or when there is none:
+/// then the responses are no blob. The keypoint keeps the sample's response.
 std::optional<Keypoint> refine(const HessianPyramid& pyramid, const Maximum& maximum);
 
 }  // namespace perennial

@@ -16,7 +16,8 @@ constexpr float kCaution = 0.7F;
 bool isBefore(const Candidate& a, const Candidate& b) {
   const Keypoint& p = a.keypoint;
   const Keypoint& q = b.keypoint;
-  return std::tie(q.response, p.y, p.x, p.scale, a.octave) < std::tie(p.response, q.y, q.x, q.scale, b.octave);
+  return std::tie(q.response, p.y, p.x, p.scale, a.octave) <
+         std::tie(p.response, q.y, q.x, q.scale, b.octave);
 }
 
 }  // namespace

@@ -13,14 +13,15 @@ namespace perennial {
 
 /// Upright SURF detector, the "fast Hessian" of Bay et al., CVIU 2008, section 3.
 ///
-/// The result is, by definition: of all maxima of the scale space with a response of at least `min_response`, refined,
-/// whose patch fits the image, without those that a stronger one of another octave makes duplicates, the strongest
-/// `features`; by falling response, then y, x and scale. Nothing of an earlier image enters it.
+/// The result is, by definition: of all maxima of the scale space with a response of at least `min_response`,
+/// refined, whose patch fits the image, without those that a stronger one of another octave makes duplicates,
+/// the strongest `features`; by falling response, then y, x and scale. Nothing of an earlier image enters it.
 ///
-/// What adapts from image to image is where the search starts: at the response that would have given the image before
-/// a quarter more candidates than it needed. When that finds too few, the same responses are searched again with lower
-/// thresholds, down to `min_response`. A candidate's fate depends on stronger candidates only, so every threshold
-/// that finds enough gives the same result. One instance serves one thread.
+/// What adapts from image to image is where the search starts: at the response that would have given the
+/// image before a quarter more candidates than it needed. When that finds too few, the same responses are
+/// searched again with lower thresholds, down to `min_response`. A candidate's fate depends on stronger
+/// candidates only, so every threshold that finds enough gives the same result. One instance serves one
+/// thread.
 class SurfDetector {
  public:
   explicit SurfDetector(const ExtractionSettings& settings);

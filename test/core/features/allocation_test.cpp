@@ -1,0 +1,44 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "core/features/synthetic_images.h"
+#include "perennial/core/feature_extractor.h"
+
+/// A program of its own, because it counts every allocation.
+namespace {
+
+int allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  void* const memory = std::malloc(size);
+  if (memory == nullptr) {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+
+namespace perennial {
+namespace {
+
+/// A robot runs for hours: after the first image only the result, two arrays, is allocated.
+TEST(FeatureExtractor, keepsItsMemory) {
+  const cv::Mat image = texture(400, 300, 81);
+  const cv::Mat darker = 0.8 * image;
+  FeatureExtractor extractor;
+  extractor.extract(image);
+  const int before = allocations;
+  const FeatureSet features = extractor.extract(darker);
+  EXPECT_EQ(features.size(), 500U);
+  EXPECT_EQ(allocations - before, 2);
+}
+
+}  // namespace
+}  // namespace perennial
