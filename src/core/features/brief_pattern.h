@@ -21,17 +21,14 @@ constexpr int kBriefPatch = 48;
 
 /// The sampling pattern; descriptors in maps depend on it, so it must never change.
 ///
-/// Isotropic Gaussian with sigma = S / 5 = 9.6 px about the keypoint, which Calonder et al. (ECCV 2010,
-/// section 3.2, GII) found best. How it was made, in integers, so that it can be made again anywhere (a test
-/// does):
+/// Isotropic Gaussian with sigma = S / 5 = 9.6 px about the keypoint, arrangement G II of Calonder et al. (ECCV
+/// 2010, section 3.2). How it was made, in integers, so that it can be made again anywhere (a test does):
 ///
-///  - random 16-bit numbers: s = 6364136223846793005 s + 1442695040888963407 (mod 2^64, s = 0 before the
-///  first step),
-///    the upper 16 bits of s after each step;
-///  - a coordinate: the sum t of 12 such numbers less 393210, which is nearly normal with deviation 65536,
-///  then
-///    floor(t * 96 / 655360 + 1/2); drawn again until it is within -24..23;
-///  - a test: x1, y1, x2, y2 in this order; drawn again when both places are the same.
+///  - random 16-bit numbers: the upper 16 bits of s after s = 6364136223846793005 s + 1442695040888963407
+///    (mod 2^64, s = 0 before the first step);
+///  - a coordinate: t = the sum of 12 such numbers less 393210, which is nearly normal with deviation 65536;
+///    the coordinate is floor(t * 96 / 655360 + 1/2), drawn again until it is within -24..23;
+///  - a test: x1, y1, x2, y2 in this order, drawn again when both places are the same.
 extern const std::array<BriefTest, Descriptor::kBits> kBriefPattern;
 
 }  // namespace perennial
