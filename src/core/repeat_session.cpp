@@ -1,5 +1,6 @@
 #include "perennial/core/repeat_session.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "perennial/core/error.h"
@@ -9,6 +10,8 @@ namespace {
 
 /// Local maps this far behind the robot are no longer needed.
 constexpr double kKeepBehind_m = 2.0;
+/// A gap between images longer than twice this is a pause, not a rhythm.
+constexpr double kLongestPreview_m = 0.5;
 
 }  // namespace
 
@@ -58,10 +61,16 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   step.view = extractor_.extract(image);
   step.registration = registerView(registration_, *map, step.view);
   step.positions = map->alternatives[step.registration.alternative].positions;
-  step.velocity = steer(profile_.travellingAt(step.distance_m), step.registration.result.displacement_px,
+  step.velocity = steer(profile_.travellingAt(step.distance_m + preview(travelled_m)), step.registration.result.displacement_px,
                         focal_length_px_, steering_);
   window_.forgetBefore(step.distance_m, kKeepBehind_m);
   return step;
+}
+
+double RepeatSession::preview(double travelled_m) {
+  const double interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
+  previous_travelled_m_ = travelled_m;
+  return std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
 }
 
 Observation observationOf(const NavigationStep& step) {

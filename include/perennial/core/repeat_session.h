@@ -68,6 +68,10 @@ class RepeatSession {
   void setFocalLength(std::optional<double> focal_length_px) { focal_length_px_ = focal_length_px; }
 
  private:
+  /// A command holds until the next image, so the velocity taught half an image's way ahead is its best mean; looking
+  /// it up at the image itself would enter every curve half that way too late.
+  double preview(double travelled_m);
+
   MapMetadata map_;
   PathProfile profile_;
   std::size_t local_maps_;
@@ -80,6 +84,7 @@ class RepeatSession {
   ActiveMapWindow window_;
   double start_m_ = 0.0;
   std::optional<double> start_travelled_m_;
+  std::optional<double> previous_travelled_m_;
 };
 
 /// The part of a step that the map learns from.
