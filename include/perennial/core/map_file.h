@@ -46,6 +46,15 @@ struct LocalMapPlace {
   double distance_m = 0.0;
 };
 
+/// What takes how much room in a map file.
+struct MapSizes {
+  std::uint64_t file_bytes = 0;
+  std::uint64_t unused_bytes = 0;   ///< within the file, after a rollback; used by later traversals
+  std::uint64_t image_bytes = 0;
+  std::uint64_t taught_bytes = 0;   ///< features as they were taught
+  std::uint64_t learned_bytes = 0;  ///< states of later traversals
+};
+
 /// Writes a newly taught map. Everything goes to `<file>.partial`; only finish() makes `<file>` appear, complete and in
 /// one step, so that a half-taught map is never taken for a whole one. A partial file that a crash left behind is
 /// replaced; one that is being written at this moment is refused. Memory does not grow with the path. One thread.
@@ -124,6 +133,8 @@ class MapFile {
 
   /// Forgets every traversal after `traversal`. Not while a traversal is open.
   void rollback(std::uint32_t traversal);
+
+  MapSizes sizes() const;
 
   /// Reads everything and returns what is wrong, empty when nothing is.
   std::vector<std::string> verify() const;

@@ -164,7 +164,7 @@ std::uint32_t pageChecksum(const std::uint8_t* page, std::uint32_t number) {
 
 const char* checksumVfsName() { return registered() == nullptr ? nullptr : kName; }
 
-Page emptyDatabase() {
+Page emptyDatabase(std::uint32_t application_id) {
   Page page{};
   const auto putBigEndian = [&page](std::size_t offset, std::uint32_t value) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -178,6 +178,7 @@ Page emptyDatabase() {
   putBigEndian(28, 1);                                   // pages
   putBigEndian(44, 4);                                   // schema format
   putBigEndian(56, 1);                                   // UTF-8
+  putBigEndian(68, application_id);
   putBigEndian(92, 1);                                   // change counter for which the number of pages is valid
   putBigEndian(96, SQLITE_VERSION_NUMBER);
   page[100] = 13;  // an empty table leaf

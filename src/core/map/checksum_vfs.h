@@ -22,7 +22,7 @@ using Page = std::array<std::uint8_t, kPageSize>;
 const char* checksumVfsName();
 
 /// First and only page of an empty database whose pages have room for their checksum.
-Page emptyDatabase();
+Page emptyDatabase(std::uint32_t application_id);
 
 /// Writes the checksum of page `number` (from 1) into its last bytes.
 void sealPage(std::uint8_t* page, std::uint32_t number);

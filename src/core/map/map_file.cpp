@@ -13,7 +13,7 @@
 namespace perennial {
 namespace {
 
-constexpr int kWriterPatienceMs = 500;  // for commits in progress; a traversal takes longer
+constexpr int kWriterPatienceMs = 200;  // for commits in progress; a traversal takes longer
 
 /// A traversal that has begun and is not committed.
 struct OpenTraversal {
@@ -223,15 +223,9 @@ void MapFile::commitTraversal(double end_stamp_s) {
       throw MapError("map '" + file() + "' was changed by another program since the traversal began: discard it");
     }
   }
-  try {
-    implementation_->writeStaged(end_stamp_s);
-    database.execute("COMMIT");
-  } catch (const MapError&) {
-    if (database.inTransaction()) {
-      database.execute("ROLLBACK");
-    }
-    throw;
-  }
+  Transaction transaction(database);
+  implementation_->writeStaged(end_stamp_s);
+  transaction.commit();
   implementation_->open.reset();
 }
 
@@ -240,13 +234,25 @@ void MapFile::discardTraversal() {
   implementation_->endTraversal();
 }
 
+MapSizes MapFile::sizes() const {
+  const Database& database = implementation_->database;
+  const auto bytes = [&database](const char* sql) { return static_cast<std::uint64_t>(database.integer(sql)); };
+  MapSizes sizes;
+  sizes.file_bytes = bytes("PRAGMA page_count") * bytes("PRAGMA page_size");
+  sizes.unused_bytes = bytes("PRAGMA freelist_count") * bytes("PRAGMA page_size");
+  sizes.image_bytes = bytes("SELECT sum(length(png)) FROM image");
+  sizes.taught_bytes = bytes("SELECT sum(length(features)) FROM state WHERE traversal = 0");
+  sizes.learned_bytes = bytes("SELECT sum(length(features)) FROM state WHERE traversal > 0");
+  return sizes;
+}
+
 void MapFile::rollback(std::uint32_t traversal) {
   const Database& database = implementation_->database;
   if (implementation_->open) {
     throw MapError("map '" + file() + "': a traversal is open; commit or discard it before rolling back");
   }
   implementation_->lockForWriting();
-  Transaction transaction(database, "SAVEPOINT rollback");
+  Transaction transaction(database);
   const std::uint32_t newest = newestTraversal(database);
   if (traversal > newest) {
     throw MapError("map '" + file() + "' has no traversal " + std::to_string(traversal) + ", only 0 to " +

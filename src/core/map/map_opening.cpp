@@ -46,7 +46,7 @@ void checkHeader(const std::string& file, const Header& header) {
     throw MapError("'" + file + "' is not a map, or its beginning is damaged: it is no SQLite file. Give the file of a "
                    "taught map (*.perennial)");
   }
-  if (header.application != static_cast<std::uint32_t>(kMapApplicationId)) {
+  if (header.application != kMapApplicationId) {
     throw MapError("'" + file + "' is not a map: it is an SQLite file of another program. Give the file of a taught map "
                    "(*.perennial)");
   }
@@ -89,7 +89,11 @@ void checkFirstPage(const Database& database) {
 Database openMapDatabase(const std::string& file) {
   checkFile(file);
   Database database = Database::openMap(file);
+  // A file from anywhere must not be able to run anything.
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   try {
+    // Every commit must be on the disk when it returns.
+    database.execute("PRAGMA synchronous=FULL; PRAGMA cell_size_check=ON; PRAGMA trusted_schema=OFF");
     // The first access undoes what a crash interrupted; only then is the header what it should be.
     Transaction reading(database, "BEGIN");
     database.integer("PRAGMA schema_version");

@@ -29,7 +29,6 @@ const std::vector<std::string>& statements() {
 }  // namespace
 
 void createSchema(const Database& database) {
-  database.execute(("PRAGMA application_id=" + std::to_string(kMapApplicationId)).c_str());
   for (const std::string& statement : statements()) {
     database.execute(statement.c_str());
   }

@@ -7,12 +7,12 @@
 namespace perennial {
 
 /// "PRNL", in the header of the file: says that an SQLite file is a map.
-constexpr std::int32_t kMapApplicationId = 0x50524E4C;
+constexpr std::uint32_t kMapApplicationId = 0x50524E4C;
 
 /// Version of the format, SQLite's user_version. 0: a map whose teaching has not been finished.
 constexpr std::int32_t kMapFormatVersion = 1;
 
-/// Creates the tables, and marks the file as an unfinished map.
+/// Creates the tables in an empty database.
 void createSchema(const Database& database);
 
 /// True when the file has exactly the tables and indices of this format version.

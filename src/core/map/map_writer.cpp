@@ -1,5 +1,4 @@
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include <opencv2/imgcodecs.hpp>
@@ -19,7 +18,7 @@ namespace perennial {
 struct MapWriter::Implementation {
   Implementation(const std::string& file, const MapMetadata& metadata_in, bool overwrite_in)
       : metadata(metadata_in), overwrite(overwrite_in), partial(file) {
-    const Page page = emptyDatabase();
+    const Page page = emptyDatabase(kMapApplicationId);
     partial.append(page.data(), page.size());
     database.emplace(Database::openMap(partial.path()));
     database->execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE");
@@ -29,6 +28,7 @@ struct MapWriter::Implementation {
     insert_state.emplace(*database, "INSERT INTO state VALUES(NULL, ?, 0, ?, ?)");
   }
 
+  void requireSound() const;
   void check(const LocalMap& map, const cv::Mat& image) const;
   void add(const LocalMap& map, const cv::Mat& image);
   void complete(const PathProfile& profile, double length_m);
@@ -40,13 +40,21 @@ struct MapWriter::Implementation {
   std::optional<Statement> insert_place;
   std::optional<Statement> insert_image;
   std::optional<Statement> insert_state;
+  bool broken = false;  // without a journal, nothing can be made of a database after a failed statement
   std::size_t local_maps = 0;
   double last_distance_m = 0.0;
   double last_stamp_s = 0.0;
 };
 
+void MapWriter::Implementation::requireSound() const {
+  if (broken) {
+    throw MapError("map '" + metadata.name + "': writing it has failed before (disk full?); teach the path again");
+  }
+}
+
 void MapWriter::Implementation::check(const LocalMap& map, const cv::Mat& image) const {
   const std::string name = "map '" + metadata.name + "', local map " + std::to_string(map.index);
+  requireSound();
   if (!database) {
     throw MapError(name + ": the map is finished already");
   }
@@ -75,10 +83,12 @@ void MapWriter::Implementation::add(const LocalMap& map, const cv::Mat& image) {
     throw ImageError("map '" + metadata.name + "': image of local map " + std::to_string(index) + " gives no PNG");
   }
   const Bytes features = encodeLocalMap(map);
+  broken = true;
   insert_place->bind(0, index).bind(1, map.distance_m).bind(2, map.stamp_s);
   insert_place->bind(3, std::int64_t{placeChecksum(map.index, map.distance_m, map.stamp_s)}).run();
   insert_image->bind(0, index).bind(1, png).bind(2, std::int64_t{imageChecksum(map.index, png)}).run();
   insert_state->bind(0, index).bind(1, features).bind(2, std::int64_t{stateChecksum(map.index, 0, features)}).run();
+  broken = false;
   ++local_maps;
   last_distance_m = map.distance_m;
   last_stamp_s = map.stamp_s;
@@ -86,10 +96,12 @@ void MapWriter::Implementation::add(const LocalMap& map, const cv::Mat& image) {
 
 void MapWriter::Implementation::complete(const PathProfile& profile, double length_m) {
   metadata.length_m = length_m;
+  broken = true;
   writeProfile(*database, profile);
   writeTraversal(*database, {0, "", metadata.taught_stamp_s, last_stamp_s, local_maps});
   writeMetadata(*database, {metadata, local_maps, profile.entries().size()});
   database->execute(("PRAGMA user_version=" + std::to_string(kMapFormatVersion) + "; COMMIT").c_str());
+  broken = false;
   insert_place.reset();
   insert_image.reset();
   insert_state.reset();
@@ -102,7 +114,7 @@ MapWriter::MapWriter(const std::string& file, const MapMetadata& metadata, bool 
   if (!problem.empty()) {
     throw MapError("map '" + file + "': " + problem);
   }
-  if (!overwrite && std::filesystem::exists(file)) {
+  if (!overwrite && fileExists(file)) {
     throw MapError("map '" + file + "' exists already: choose another name, or ask for it to be overwritten");
   }
   implementation_ = std::make_unique<Implementation>(file, metadata, overwrite);
@@ -117,6 +129,7 @@ void MapWriter::add(const LocalMap& map, const cv::Mat& image) {
 }
 
 void MapWriter::finish(const PathProfile& profile, double length_m) {
+  implementation_->requireSound();
   const std::string name = "map '" + implementation_->metadata.name + "'";
   if (implementation_->local_maps == 0) {
     throw MapError(name + " has no local maps: nothing was taught");

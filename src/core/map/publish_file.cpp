@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPartialSuffix = ".partial";
+constexpr int kPatienceMs = 500;  // for a map that is to be replaced, and that somebody is just reading
 
 std::string systemError() { return std::strerror(errno); }
 
@@ -44,13 +45,17 @@ void syncFolder(const std::string& file) {
   }
 }
 
-/// SQLite's user_version, big-endian at byte 60 of the header; none when there is no header.
-std::optional<int> formatVersion(int descriptor) {
-  std::array<std::uint8_t, 64> header{};
+/// Whether a partial file is complete: SQLite's application_id and user_version stand big-endian at 68 and 60.
+bool isFinishedMap(int descriptor) {
+  std::array<std::uint8_t, 72> header{};
   if (::pread(descriptor, header.data(), header.size(), 0) != static_cast<ssize_t>(header.size())) {
-    return std::nullopt;
+    return false;
   }
-  return header[60] << 24 | header[61] << 16 | header[62] << 8 | header[63];
+  const auto bigEndian = [&header](std::size_t i) {
+    return std::uint32_t{header[i]} << 24 | std::uint32_t{header[i + 1]} << 16 | std::uint32_t{header[i + 2]} << 8 |
+           std::uint32_t{header[i + 3]};
+  };
+  return bigEndian(68) == kMapApplicationId && bigEndian(60) > 0;
 }
 
 bool isSameFile(int descriptor, const std::string& path) {
@@ -77,12 +82,12 @@ void removeJournal(const std::string& file) { ::unlink((file + "-journal").c_str
 
 /// A map that is to be replaced, held so that no program is using it meanwhile. A damaged one need not be.
 std::optional<Database> heldForReplacement(const std::string& file) {
-  if (!fs::exists(file)) {
+  if (!fileExists(file)) {
     return std::nullopt;
   }
   try {
     Database database = Database::openMap(file);
-    database.setPatience(1000);
+    database.setPatience(kPatienceMs);
     database.execute("BEGIN EXCLUSIVE");
     return database;
   } catch (const SqliteError& error) {
@@ -95,6 +100,11 @@ std::optional<Database> heldForReplacement(const std::string& file) {
 
 }  // namespace
 
+bool fileExists(const std::string& file) {
+  std::error_code problem;
+  return fs::exists(file, problem);
+}
+
 PartialFile::PartialFile(const std::string& final_file) : final_(final_file), path_(final_file + kPartialSuffix) {
   std::error_code problem;
   fs::create_directories(folderOf(final_file), problem);
@@ -103,7 +113,7 @@ PartialFile::PartialFile(const std::string& final_file) : final_(final_file), pa
                    ". Choose another map folder or change its permissions");
   }
   lock();
-  if (formatVersion(descriptor_).value_or(0) > 0) {
+  if (isFinishedMap(descriptor_)) {
     ::close(descriptor_);
     throw MapError("'" + path_ + "' holds a finished map that could not be given its name: move or remove it first");
   }
@@ -150,7 +160,7 @@ void PartialFile::publish(bool overwrite) {
   if (::fsync(descriptor_) != 0) {
     throw MapError("'" + path_ + "' cannot be synced to the disk: " + systemError() + ". Check the disk");
   }
-  if (!overwrite && fs::exists(final_)) {
+  if (!overwrite && fileExists(final_)) {
     throw MapError("'" + final_ + "' exists already and is kept" + where);
   }
   const std::optional<Database> replaced = heldForReplacement(final_);

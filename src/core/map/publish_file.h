@@ -4,6 +4,9 @@
 
 namespace perennial {
 
+/// False also when one must not look.
+bool fileExists(const std::string& file);
+
 /// A file that is being written under another name, with an advisory lock (flock) that tells a live one from one that
 /// a crash left behind. Throws MapError.
 class PartialFile {

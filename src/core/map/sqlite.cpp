@@ -52,11 +52,7 @@ Database::Database(const std::string& file, const char* path, int flags, const c
 }
 
 Database Database::openMap(const std::string& file) {
-  Database database(file, file.c_str(), SQLITE_OPEN_READWRITE, checksumVfsName());
-  // A file from anywhere must not be able to run anything, and every commit must be on the disk when it returns.
-  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  database.execute("PRAGMA synchronous=FULL; PRAGMA cell_size_check=ON; PRAGMA trusted_schema=OFF");
-  return database;
+  return Database(file, file.c_str(), SQLITE_OPEN_READWRITE, checksumVfsName());
 }
 
 Database Database::openTemporary(const std::string& file) {

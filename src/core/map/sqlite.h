@@ -26,7 +26,8 @@ class SqliteError : public MapError {
 /// One connection. One thread at a time.
 class Database {
  public:
-  /// An existing map file, through the layer of page checksums. Opens for reading alone where writing is not allowed.
+  /// An existing map file, through the layer of page checksums; for reading alone where writing is not allowed. Does
+  /// not look into the file.
   static Database openMap(const std::string& file);
   /// An empty database on disk that vanishes with the connection; `file` is named in errors.
   static Database openTemporary(const std::string& file);
@@ -95,6 +96,8 @@ class Transaction {
  public:
   /// `begin`: "BEGIN", "BEGIN IMMEDIATE" or "BEGIN EXCLUSIVE".
   Transaction(const Database& database, const char* begin) : database_(database) { database_.execute(begin); }
+  /// Takes over one that has begun.
+  explicit Transaction(const Database& database) : database_(database) {}
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
