@@ -1,0 +1,130 @@
+#include <charconv>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "map_commands.h"
+
+namespace {
+
+constexpr int kSuccess = 0;
+constexpr int kFailure = 1;
+constexpr int kWrongUse = 2;
+
+constexpr const char* kHelp = R"(Looks into the map files of visual teach and repeat.
+
+usage: map_tool list FILE             local maps: index, distance, time of teaching, features, strategy
+       map_tool list FOLDER           maps in a folder, one line each
+       map_tool info FILE             what the map was taught with, its traversals and sizes
+       map_tool verify FILE           reads everything and lists what is damaged
+       map_tool history FILE          traversals that the map has learned from; 0 is the teaching
+       map_tool rollback FILE --to N  forgets everything learned after traversal N
+       map_tool export FILE [--out FOLDER]
+                                      images as PNG, features as CSV, profile and metadata as YAML, into a new or
+                                      empty folder (default: the map's name with _export, in the current folder)
+
+FILE is the file of a map (*.perennial). Nothing but rollback changes it. Needs no ROS master.
+exit status: 0 success; 1 the map is damaged or something else went wrong; 2 wrong use
+)";
+
+class WrongUse : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments {
+  std::string command;
+  std::string file;
+  std::optional<std::string> option;  // value of the command's one option
+};
+
+/// The one option a command has, "" when it has none.
+std::string optionOf(const std::string& command) {
+  if (command == "rollback") {
+    return "--to";
+  }
+  return command == "export" ? "--out" : "";
+}
+
+Arguments parse(const std::vector<std::string>& words) {
+  Arguments arguments;
+  arguments.command = words.at(0);
+  const std::string option = optionOf(arguments.command);
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word == option) {
+      if (++i == words.size()) {
+        throw WrongUse(option + " needs a value");
+      }
+      arguments.option = words[i];
+    } else if (word.size() > 1 && word[0] == '-') {
+      throw WrongUse("unknown option " + word);
+    } else if (arguments.file.empty()) {
+      arguments.file = word;
+    } else {
+      throw WrongUse("one file at a time, not also '" + word + "'");
+    }
+  }
+  if (arguments.file.empty()) {
+    throw WrongUse("which FILE?");
+  }
+  return arguments;
+}
+
+std::uint32_t traversalNumber(const std::optional<std::string>& text) {
+  std::uint32_t number = 0;
+  const char* end = text ? text->data() + text->size() : nullptr;
+  if (!text || std::from_chars(text->data(), end, number).ptr != end || text->empty()) {
+    throw WrongUse("rollback needs --to and the number of a traversal, as listed by history");
+  }
+  return number;
+}
+
+int run(const Arguments& arguments) {
+  using namespace perennial;
+  const std::string& command = arguments.command;
+  if (command == "list") {
+    listMap(arguments.file, std::cout);
+  } else if (command == "info") {
+    printInfo(arguments.file, std::cout);
+  } else if (command == "verify") {
+    return verifyMap(arguments.file, std::cout) ? kSuccess : kFailure;
+  } else if (command == "history") {
+    printHistory(arguments.file, std::cout);
+  } else if (command == "rollback") {
+    rollBack(arguments.file, traversalNumber(arguments.option), std::cout);
+  } else if (command == "export") {
+    const std::string name = std::filesystem::path(arguments.file).stem().string() + "_export";
+    exportMap(arguments.file, arguments.option.value_or(name), std::cout);
+  } else {
+    throw WrongUse("unknown command '" + command + "'");
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && (words[0] == "--help" || words[0] == "-h" || words[0] == "help")) {
+    std::cout << kHelp;
+    return kSuccess;
+  }
+  try {
+    if (words.empty()) {
+      throw WrongUse("which command?");
+    }
+    return run(parse(words));
+  } catch (const WrongUse& error) {
+    std::cerr << "map_tool: " << error.what() << "\n\n" << kHelp;
+    return kWrongUse;
+  } catch (const std::exception& error) {
+    std::cerr << "map_tool: " << error.what() << "\n";
+    return kFailure;
+  }
+}
