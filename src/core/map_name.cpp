@@ -28,7 +28,8 @@ fs::path nearestExisting(fs::path folder) {
 
 bool endsWithSuffix(const std::string& name) {
   const std::string_view suffix = kMapSuffix;
-  return name.size() >= suffix.size() && name.compare(name.size() - suffix.size(), suffix.size(), suffix) == 0;
+  return name.size() >= suffix.size() &&
+         name.compare(name.size() - suffix.size(), suffix.size(), suffix) == 0;
 }
 
 /// Why it is no name, "" when it is one.
@@ -54,7 +55,8 @@ std::string nameProblem(const std::string& name) {
 /// For error messages: a name may hold anything.
 std::string printable(std::string name) {
   name.resize(std::min(name.size(), kMaxMapNameLength));
-  std::replace_if(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
   return name;
 }
 

@@ -42,8 +42,9 @@ void listFolder(const std::string& folder, std::ostream& out) {
     out << name << "  ";
     try {
       const MapFile map(mapFile(folder, name));
-      out << std::fixed << std::setprecision(1) << map.metadata().length_m << " m, " << map.size() << " local maps, "
-          << map.traversals().size() - 1 << " traversals, taught " << dateTime(map.metadata().taught_stamp_s) << "\n";
+      out << std::fixed << std::setprecision(1) << map.metadata().length_m << " m, " << map.size()
+          << " local maps, " << map.traversals().size() - 1 << " traversals, taught "
+          << dateTime(map.metadata().taught_stamp_s) << "\n";
     } catch (const MapError& error) {
       out << "unusable: " << error.what() << "\n";
     }
@@ -80,8 +81,8 @@ void printInfo(const std::string& file, std::ostream& out) {
       << "local maps      " << map.size() << ", every " << metadata.map_interval_m << " m\n"
       << "profile         " << map.profile().entries().size() << " entries\n"
       << "traversals      " << map.traversals().size() - 1 << " beside the teaching\n"
-      << "file            " << megabytes(sizes.file_bytes) << ", of which unused " << megabytes(sizes.unused_bytes)
-      << "\n"
+      << "file            " << megabytes(sizes.file_bytes) << ", of which unused "
+      << megabytes(sizes.unused_bytes) << "\n"
       << "images          " << megabytes(sizes.image_bytes) << "\n"
       << "taught features " << megabytes(sizes.taught_bytes) << "\n"
       << "learned states  " << megabytes(sizes.learned_bytes) << "\n";
@@ -93,8 +94,8 @@ bool verifyMap(const std::string& file, std::ostream& out) {
   for (const std::string& problem : problems) {
     out << problem << "\n";
   }
-  out << "map '" << file << "': " << (problems.empty() ? "no" : std::to_string(problems.size())) << " problems in "
-      << map.size() << " local maps and " << map.traversals().size() << " traversals\n";
+  out << "map '" << file << "': " << (problems.empty() ? "no" : std::to_string(problems.size()))
+      << " problems in " << map.size() << " local maps and " << map.traversals().size() << " traversals\n";
   return problems.empty();
 }
 
@@ -112,8 +113,8 @@ void rollBack(const std::string& file, std::uint32_t traversal, std::ostream& ou
   MapFile map(file);
   const std::size_t before = map.traversals().size();
   map.rollback(traversal);
-  out << "map '" << file << "': " << before - map.traversals().size() << " traversals forgotten; the newest is now "
-      << traversal << "\n";
+  out << "map '" << file << "': " << before - map.traversals().size()
+      << " traversals forgotten; the newest is now " << traversal << "\n";
 }
 
 }  // namespace perennial

@@ -1,10 +1,10 @@
+#include <yaml-cpp/yaml.h>
+
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-
-#include <yaml-cpp/yaml.h>
 
 #include "map_commands.h"
 #include "perennial/core/error.h"
@@ -51,7 +51,8 @@ void writeFile(const fs::path& file, const char* bytes, std::size_t size) {
   stream.write(bytes, static_cast<std::streamsize>(size));
   stream.close();
   if (!stream) {
-    throw MapError("'" + file.string() + "' cannot be written: check the disk's free space and the folder's permissions");
+    throw MapError("'" + file.string() +
+                   "' cannot be written: check the disk's free space and the folder's permissions");
   }
 }
 void writeFile(const fs::path& file, const std::string& text) { writeFile(file, text.data(), text.size()); }
@@ -65,7 +66,8 @@ std::string featuresCsv(const LocalMap& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     const Keypoint& keypoint = map.features.keypoints[i];
     text += std::to_string(map.ids[i]) + "," + exact(keypoint.x) + "," + exact(keypoint.y) + "," +
-            exact(keypoint.scale) + "," + exact(keypoint.response) + "," + hexadecimal(map.features.descriptors[i]);
+            exact(keypoint.scale) + "," + exact(keypoint.response) + "," +
+            hexadecimal(map.features.descriptors[i]);
     for (std::size_t k = 0; k < map.numbers_per_feature; ++k) {
       text += "," + exact(map.featureNumbers(i)[k]);
     }
@@ -78,7 +80,9 @@ std::string metadataYaml(const MapFile& map) {
   const MapMetadata& metadata = map.metadata();
   YAML::Emitter yaml;
   yaml << YAML::BeginMap;
-  const auto add = [&yaml](const char* key, const auto& value) { yaml << YAML::Key << key << YAML::Value << value; };
+  const auto add = [&yaml](const char* key, const auto& value) {
+    yaml << YAML::Key << key << YAML::Value << value;
+  };
   yaml << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted << metadata.name;
   yaml << YAML::Key << "camera" << YAML::Value << YAML::DoubleQuoted << metadata.camera;
   add("image_width", metadata.image_width);
@@ -155,7 +159,8 @@ void exportMap(const std::string& file, const std::string& folder, std::ostream&
   }
   index.close();
   if (!index) {
-    throw MapError("'" + (target / "local_maps.csv").string() + "' cannot be written: check the disk's free space");
+    throw MapError("'" + (target / "local_maps.csv").string() +
+                   "' cannot be written: check the disk's free space");
   }
   out << map.size() << " local maps exported to '" << folder << "'\n";
 }

@@ -3,11 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <opencv2/core.hpp>
 
 #include "perennial/core/local_map.h"
 #include "perennial/core/path_profile.h"
@@ -17,14 +16,15 @@ namespace perennial {
 /// What is known of a map as a whole.
 struct MapMetadata {
   std::string name;
-  std::string camera;          ///< name of the camera (or its frame) it was taught with
-  int image_width = 0;         ///< px
-  int image_height = 0;        ///< px
-  std::string image_encoding;  ///< as in sensor_msgs/Image: "mono8", "bgr8"; the map itself stores grey images
-  std::string extraction;      ///< ExtractionSettings::describe() of the teaching
+  std::string camera;    ///< name of the camera (or its frame) it was taught with
+  int image_width = 0;   ///< px
+  int image_height = 0;  ///< px
+  std::string
+      image_encoding;      ///< as in sensor_msgs/Image: "mono8", "bgr8"; the map itself stores grey images
+  std::string extraction;  ///< ExtractionSettings::describe() of the teaching
   double map_interval_m = 0.0;
-  double taught_stamp_s = 0.0; ///< stamp of the first image, seconds since 1970
-  double length_m = 0.0;       ///< length of the taught path; at least the last local map's distance
+  double taught_stamp_s = 0.0;  ///< stamp of the first image, seconds since 1970
+  double length_m = 0.0;        ///< length of the taught path; at least the last local map's distance
 };
 
 /// Throws MapError, with both settings and what to do, unless the map was taught with `wanted`
@@ -34,7 +34,7 @@ void requireSameExtraction(const MapMetadata& metadata, const std::string& wante
 /// One traversal that the map has learned from. Traversal 0 is the teaching.
 struct TraversalInfo {
   std::uint32_t id = 0;
-  std::string strategy;        ///< "score_based/1"; empty for the teaching
+  std::string strategy;  ///< "score_based/1"; empty for the teaching
   double start_stamp_s = 0.0;
   double end_stamp_s = 0.0;
   std::size_t updated_maps = 0;
@@ -49,32 +49,33 @@ struct LocalMapPlace {
 /// What takes how much room in a map file.
 struct MapSizes {
   std::uint64_t file_bytes = 0;
-  std::uint64_t unused_bytes = 0;   ///< within the file, after a rollback; used by later traversals
+  std::uint64_t unused_bytes = 0;  ///< within the file, after a rollback; used by later traversals
   std::uint64_t image_bytes = 0;
   std::uint64_t taught_bytes = 0;   ///< features as they were taught
   std::uint64_t learned_bytes = 0;  ///< states of later traversals
 };
 
-/// Writes a newly taught map. Everything goes to `<file>.partial`; only finish() makes `<file>` appear, complete and in
-/// one step, so that a half-taught map is never taken for a whole one. A partial file that a crash left behind is
-/// replaced; one that is being written at this moment is refused. Memory does not grow with the path. One thread.
-/// Throws MapError.
+/// Writes a newly taught map. Everything goes to `<file>.partial`; only finish() makes `<file>` appear,
+/// complete and in one step, so that a half-taught map is never taken for a whole one. A partial file that a
+/// crash left behind is replaced; one that is being written at this moment is refused. Memory does not grow
+/// with the path. One thread. Throws MapError.
 class MapWriter {
  public:
-  /// Creates missing folders. Refuses an existing `file` unless `overwrite`; the old one stays until finish().
+  /// Creates missing folders. Refuses an existing `file` unless `overwrite`; the old one stays until
+  /// finish().
   MapWriter(const std::string& file, const MapMetadata& metadata, bool overwrite);
   /// Without finish(): removes the partial file.
   ~MapWriter();
   MapWriter(MapWriter&&) noexcept;
   MapWriter& operator=(MapWriter&&) = delete;
 
-  /// `map.index` must be the number of maps added before, distances must not fall. `image`: CV_8UC1 of the metadata's
-  /// size, stored as PNG; anything else is an ImageError.
+  /// `map.index` must be the number of maps added before, distances must not fall. `image`: CV_8UC1 of the
+  /// metadata's size, stored as PNG; anything else is an ImageError.
   void add(const LocalMap& map, const cv::Mat& image);
 
-  /// Stores the profile and the length, syncs, and renames to the final name. A map without local maps is refused.
-  /// When only the name cannot be given (it is taken meanwhile, or the map to be replaced is in use), the complete map
-  /// stays in the partial file, the error says so, and finish() may be called again.
+  /// Stores the profile and the length, syncs, and renames to the final name. A map without local maps is
+  /// refused. When only the name cannot be given (it is taken meanwhile, or the map to be replaced is in
+  /// use), the complete map stays in the partial file, the error says so, and finish() may be called again.
   void finish(const PathProfile& profile, double length_m);
 
   std::size_t size() const;  ///< local maps added
@@ -84,15 +85,14 @@ class MapWriter {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// A taught map: one SQLite file. Local maps are read when asked for, never all at once; opening does not depend on the
-/// length of the path. Every blob carries a checksum, tested on reading.
+/// A taught map: one SQLite file. Local maps are read when asked for, never all at once; opening does not
+/// depend on the length of the path. Every blob carries a checksum, tested on reading.
 ///
-/// Changes are staged by a traversal and appear in one transaction, commitTraversal(). States of earlier traversals are
-/// kept, the taught state always. One thread at a time. Any number of programs may read one file; one may have a
-/// traversal open, which is an SQLite RESERVED lock on the file: the second is refused, readers go on, and the lock
-/// goes with its process.
-/// Throws MapError, with the file's name and what to do, for a file that is missing, no map, damaged, or of another
-/// format version.
+/// Changes are staged by a traversal and appear in one transaction, commitTraversal(). States of earlier
+/// traversals are kept, the taught state always. One thread at a time. Any number of programs may read one
+/// file; one may have a traversal open, which is an SQLite RESERVED lock on the file: the second is refused,
+/// readers go on, and the lock goes with its process. Throws MapError, with the file's name and what to do,
+/// for a file that is missing, no map, damaged, or of another format version.
 class MapFile {
  public:
   explicit MapFile(const std::string& file);
@@ -120,14 +120,15 @@ class MapFile {
   /// Traversals in order; the first is the teaching.
   std::vector<TraversalInfo> traversals() const;
 
-  /// Opens a traversal: what is staged from now on belongs to it. Returns its id. An error when one is open already,
-  /// here or in another program, and where the file cannot be written.
+  /// Opens a traversal: what is staged from now on belongs to it. Returns its id. An error when one is open
+  /// already, here or in another program, and where the file cannot be written.
   std::uint32_t beginTraversal(const std::string& strategy, double start_stamp_s);
-  /// New state of a local map; replaces an earlier one staged for it. read() sees it at once, the file does not.
-  /// Index, distance and stamp must be those of the taught one. Staged states wait on disk, not in memory.
+  /// New state of a local map; replaces an earlier one staged for it. read() sees it at once, the file does
+  /// not. Index, distance and stamp must be those of the taught one. Staged states wait on disk, not in
+  /// memory.
   void stage(const LocalMap& map);
-  /// All of the traversal or nothing. Without anything staged, no traversal is recorded. After an error (disk full)
-  /// the file is as it was and the traversal still open: commit again, or discard it.
+  /// All of the traversal or nothing. Without anything staged, no traversal is recorded. After an error (disk
+  /// full) the file is as it was and the traversal still open: commit again, or discard it.
   void commitTraversal(double end_stamp_s);
   void discardTraversal();
 

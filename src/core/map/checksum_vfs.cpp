@@ -1,4 +1,5 @@
-// A VFS shim as described at https://sqlite.org/vfs.html, section 2.2; file format at https://sqlite.org/fileformat2.html.
+// A VFS shim as described at https://sqlite.org/vfs.html, section 2.2; file format at
+// https://sqlite.org/fileformat2.html.
 #include "map/checksum_vfs.h"
 
 #include <algorithm>
@@ -64,7 +65,9 @@ int truncateFile(sqlite3_file* file, sqlite3_int64 size) {
   return real(file)->pMethods->xTruncate(real(file), size);
 }
 int syncFile(sqlite3_file* file, int flags) { return real(file)->pMethods->xSync(real(file), flags); }
-int fileSize(sqlite3_file* file, sqlite3_int64* size) { return real(file)->pMethods->xFileSize(real(file), size); }
+int fileSize(sqlite3_file* file, sqlite3_int64* size) {
+  return real(file)->pMethods->xFileSize(real(file), size);
+}
 int lockFile(sqlite3_file* file, int level) { return real(file)->pMethods->xLock(real(file), level); }
 int unlockFile(sqlite3_file* file, int level) { return real(file)->pMethods->xUnlock(real(file), level); }
 int checkReservedLock(sqlite3_file* file, int* reserved) {
@@ -74,9 +77,12 @@ int fileControl(sqlite3_file* file, int operation, void* argument) {
   return real(file)->pMethods->xFileControl(real(file), operation, argument);
 }
 int sectorSize(sqlite3_file* file) { return real(file)->pMethods->xSectorSize(real(file)); }
-int deviceCharacteristics(sqlite3_file* file) { return real(file)->pMethods->xDeviceCharacteristics(real(file)); }
+int deviceCharacteristics(sqlite3_file* file) {
+  return real(file)->pMethods->xDeviceCharacteristics(real(file));
+}
 
-/// Version 1: neither shared memory (no write-ahead log) nor memory mapping, which would both pass the checks by.
+/// Version 1: neither shared memory (no write-ahead log) nor memory mapping, which would both pass the checks
+/// by.
 const sqlite3_io_methods* methods() {
   static const sqlite3_io_methods table = [] {
     sqlite3_io_methods m{};
@@ -98,7 +104,8 @@ const sqlite3_io_methods* methods() {
   return &table;
 }
 
-/// Only database files are wrapped; journals are handed to the parent, which needs no more room than we declared.
+/// Only database files are wrapped; journals are handed to the parent, which needs no more room than we
+/// declared.
 int openDatabaseFile(const char* name, sqlite3_file* file, int flags, int* flags_out) {
   auto* ours = reinterpret_cast<ChecksumFile*>(file);
   ours->base.pMethods = nullptr;
@@ -172,14 +179,14 @@ Page emptyDatabase(std::uint32_t application_id) {
     }
   };
   std::memcpy(page.data(), "SQLite format 3", 16);
-  putBigEndian(16, kPageSize << 16 | 0x0101);  // page size; read and written with rollback journals
+  putBigEndian(16, kPageSize << 16 | 0x0101);            // page size; read and written with rollback journals
   putBigEndian(20, kPageChecksumSize << 24 | 0x402020);  // reserved bytes; three constants of the format
   putBigEndian(24, 1);                                   // change counter
   putBigEndian(28, 1);                                   // pages
   putBigEndian(44, 4);                                   // schema format
   putBigEndian(56, 1);                                   // UTF-8
   putBigEndian(68, application_id);
-  putBigEndian(92, 1);                                   // change counter for which the number of pages is valid
+  putBigEndian(92, 1);  // change counter for which the number of pages is valid
   putBigEndian(96, SQLITE_VERSION_NUMBER);
   page[100] = 13;  // an empty table leaf
   page[105] = (kPageSize - kPageChecksumSize) >> 8;

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "map/map_image.h"
 #include "map/map_opening.h"
 #include "map/map_rows.h"
 #include "map/map_verify.h"
@@ -48,8 +47,8 @@ struct MapFile::Implementation {
 
 void MapFile::Implementation::requireIndex(std::uint32_t index) const {
   if (index >= stored.local_maps) {
-    throw MapError("map '" + database.file() + "' has no local map " + std::to_string(index) + ", only 0 to " +
-                   std::to_string(stored.local_maps - 1));
+    throw MapError("map '" + database.file() + "' has no local map " + std::to_string(index) +
+                   ", only 0 to " + std::to_string(stored.local_maps - 1));
   }
 }
 
@@ -61,7 +60,8 @@ void MapFile::Implementation::requireTraversal() const {
 
 void MapFile::Implementation::lockForWriting() const {
   if (database.isReadOnly()) {
-    throw MapError("map '" + database.file() + "' cannot be written: check the permissions of the file and its folder");
+    throw MapError("map '" + database.file() +
+                   "' cannot be written: check the permissions of the file and its folder");
   }
   database.setPatience(kWriterPatienceMs);
   try {
@@ -69,7 +69,8 @@ void MapFile::Implementation::lockForWriting() const {
   } catch (const SqliteError& error) {
     database.setPatience(Database::kPatienceMs);
     if (error.code() == SQLITE_BUSY) {
-      throw MapError("map '" + database.file() + "' is being updated by another program, and only one may at a time: "
+      throw MapError("map '" + database.file() +
+                     "' is being updated by another program, and only one may at a time: "
                      "stop the other map manager or wait for the end of its traversal");
     }
     throw;
@@ -128,11 +129,8 @@ LocalMap MapFile::readAt(std::uint32_t index, std::uint32_t traversal) const {
 }
 
 cv::Mat MapFile::readImage(std::uint32_t index) const {
-  cv::Mat image = cv::imdecode(readImagePng(index), cv::IMREAD_UNCHANGED);
-  if (image.type() != CV_8UC1 || image.cols != metadata().image_width || image.rows != metadata().image_height) {
-    throwDamaged(file(), "the image of local map " + std::to_string(index) + " is not what it should be");
-  }
-  return image;
+  implementation_->requireIndex(index);
+  return perennial::readImage(implementation_->database, index, metadata());
 }
 
 std::vector<std::uint8_t> MapFile::readImagePng(std::uint32_t index) const {
@@ -189,7 +187,8 @@ std::uint32_t MapFile::beginTraversal(const std::string& strategy, double start_
   Staging staging(file());
   implementation_->lockForWriting();
   const std::uint32_t id = newestTraversal(implementation_->database) + 1;
-  implementation_->open.emplace(OpenTraversal{{id, strategy, start_stamp_s, start_stamp_s, 0}, std::move(staging)});
+  implementation_->open.emplace(
+      OpenTraversal{{id, strategy, start_stamp_s, start_stamp_s, 0}, std::move(staging)});
   return id;
 }
 
@@ -220,7 +219,8 @@ void MapFile::commitTraversal(double end_stamp_s) {
   if (!database.inTransaction()) {  // a commit has failed before
     implementation_->lockForWriting();
     if (newestTraversal(database) + 1 != implementation_->open->info.id) {
-      throw MapError("map '" + file() + "' was changed by another program since the traversal began: discard it");
+      throw MapError("map '" + file() +
+                     "' was changed by another program since the traversal began: discard it");
     }
   }
   Transaction transaction(database);
@@ -236,7 +236,9 @@ void MapFile::discardTraversal() {
 
 MapSizes MapFile::sizes() const {
   const Database& database = implementation_->database;
-  const auto bytes = [&database](const char* sql) { return static_cast<std::uint64_t>(database.integer(sql)); };
+  const auto bytes = [&database](const char* sql) {
+    return static_cast<std::uint64_t>(database.integer(sql));
+  };
   MapSizes sizes;
   sizes.file_bytes = bytes("PRAGMA page_count") * bytes("PRAGMA page_size");
   sizes.unused_bytes = bytes("PRAGMA freelist_count") * bytes("PRAGMA page_size");
@@ -258,7 +260,8 @@ void MapFile::rollback(std::uint32_t traversal) {
     throw MapError("map '" + file() + "' has no traversal " + std::to_string(traversal) + ", only 0 to " +
                    std::to_string(newest));
   }
-  for (const char* sql : {"DELETE FROM state WHERE traversal > ?", "DELETE FROM traversal WHERE traversal > ?"}) {
+  for (const char* sql :
+       {"DELETE FROM state WHERE traversal > ?", "DELETE FROM traversal WHERE traversal > ?"}) {
     Statement(database, sql).bind(0, std::int64_t{traversal}).run();
   }
   transaction.commit();

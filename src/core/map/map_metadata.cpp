@@ -21,7 +21,9 @@ struct Values {
 std::uint32_t checksum(const std::string& key, const std::string& text) {
   return RowChecksum().add(key).add(text).value();
 }
-std::uint32_t checksum(const std::string& key, double number) { return RowChecksum().add(key).add(number).value(); }
+std::uint32_t checksum(const std::string& key, double number) {
+  return RowChecksum().add(key).add(number).value();
+}
 
 template <typename Value>
 void writeValue(const Database& database, const std::string& key, const Value& value) {
@@ -83,7 +85,8 @@ std::string metadataProblem(const MapMetadata& metadata) {
   if (!(metadata.map_interval_m > 0.0) || !std::isfinite(metadata.map_interval_m)) {
     return "the interval of its local maps is not a positive number";
   }
-  if (!(metadata.length_m >= 0.0) || !std::isfinite(metadata.length_m) || !std::isfinite(metadata.taught_stamp_s)) {
+  if (!(metadata.length_m >= 0.0) || !std::isfinite(metadata.length_m) ||
+      !std::isfinite(metadata.taught_stamp_s)) {
     return "its length or the time of its teaching is not a valid number";
   }
   return "";
@@ -131,7 +134,8 @@ StoredMetadata readMetadata(const Database& database) {
 
 void requireSameExtraction(const MapMetadata& metadata, const std::string& wanted) {
   if (metadata.extraction != wanted) {
-    throw MapError("map '" + metadata.name + "' was taught with other extraction settings than those now in use.\n" +
+    throw MapError("map '" + metadata.name +
+                   "' was taught with other extraction settings than those now in use.\n" +
                    "  taught with: " + metadata.extraction + "\n  now in use:  " + wanted +
                    "\nSet the extraction parameters to those of the map, or teach the path again");
   }

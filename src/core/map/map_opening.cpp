@@ -35,23 +35,26 @@ Header readHeader(const Database& database) {
   }
   file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0);
   const auto bigEndian = [&bytes](std::size_t i) {
-    return std::uint32_t{bytes[i]} << 24 | std::uint32_t{bytes[i + 1]} << 16 | std::uint32_t{bytes[i + 2]} << 8 |
-           std::uint32_t{bytes[i + 3]};
+    return std::uint32_t{bytes[i]} << 24 | std::uint32_t{bytes[i + 1]} << 16 |
+           std::uint32_t{bytes[i + 2]} << 8 | std::uint32_t{bytes[i + 3]};
   };
   return {std::memcmp(bytes.data(), "SQLite format 3", 16) == 0, bigEndian(68), bigEndian(60)};
 }
 
 void checkHeader(const std::string& file, const Header& header) {
   if (!header.is_sqlite) {
-    throw MapError("'" + file + "' is not a map, or its beginning is damaged: it is no SQLite file. Give the file of a "
+    throw MapError("'" + file +
+                   "' is not a map, or its beginning is damaged: it is no SQLite file. Give the file of a "
                    "taught map (*.perennial)");
   }
   if (header.application != kMapApplicationId) {
-    throw MapError("'" + file + "' is not a map: it is an SQLite file of another program. Give the file of a taught map "
+    throw MapError("'" + file +
+                   "' is not a map: it is an SQLite file of another program. Give the file of a taught map "
                    "(*.perennial)");
   }
   if (header.version == 0) {
-    throw MapError("'" + file + "' is an unfinished map, left behind when teaching was interrupted. It holds no whole "
+    throw MapError("'" + file +
+                   "' is an unfinished map, left behind when teaching was interrupted. It holds no whole "
                    "path: remove it and teach the path again");
   }
   if (header.version > static_cast<std::uint32_t>(kMapFormatVersion)) {
@@ -99,7 +102,8 @@ Database openMapDatabase(const std::string& file) {
     database.integer("PRAGMA schema_version");
     checkHeader(file, readHeader(database));
     checkFirstPage(database);
-    if (database.integer("PRAGMA page_size") != static_cast<std::int64_t>(kPageSize) || !hasMapSchema(database)) {
+    if (database.integer("PRAGMA page_size") != static_cast<std::int64_t>(kPageSize) ||
+        !hasMapSchema(database)) {
       throwDamaged(file, "its tables are not those of a map");
     }
   } catch (const SqliteError& error) {

@@ -32,14 +32,15 @@ std::uint32_t traversalChecksum(const TraversalInfo& traversal) {
 }  // namespace
 
 void throwDamaged(const std::string& file, const std::string& what) {
-  throw MapError("map '" + file + "' is damaged: " + what +
-                 ". `map_tool verify` lists all damage; restore the file from a copy, or teach the path again");
+  throw MapError(
+      "map '" + file + "' is damaged: " + what +
+      ". `map_tool verify` lists all damage; restore the file from a copy, or teach the path again");
 }
 
 std::uint32_t unsigned32(const Statement& row, int column) {
   const std::int64_t value = row.integer(column);
-  const bool valid = row.type(column) == SQLITE_INTEGER && value >= 0 &&
-                     value <= std::numeric_limits<std::uint32_t>::max();
+  const bool valid =
+      row.type(column) == SQLITE_INTEGER && value >= 0 && value <= std::numeric_limits<std::uint32_t>::max();
   return valid ? static_cast<std::uint32_t>(value) : std::numeric_limits<std::uint32_t>::max();
 }
 
@@ -68,7 +69,8 @@ void writeProfile(const Database& database, const PathProfile& profile) {
 }
 
 PathProfile readProfile(const Database& database, std::size_t entries) {
-  Statement query(database, "SELECT entry, distance_m, forward, angular, flipper, crc FROM profile ORDER BY entry");
+  Statement query(database,
+                  "SELECT entry, distance_m, forward, angular, flipper, crc FROM profile ORDER BY entry");
   std::vector<ProfileEntry> found;
   while (query.step()) {
     const auto number = static_cast<std::uint32_t>(found.size());
@@ -124,7 +126,8 @@ Place readPlace(const Database& database, std::uint32_t local_map) {
   }
   const Place place{query.real(0), query.real(1)};
   if (unsigned32(query, 2) != placeChecksum(local_map, place.distance_m, place.stamp_s)) {
-    throwDamaged(database.file(), numbered("the checksum of the place of local map ", local_map) + " is wrong");
+    throwDamaged(database.file(),
+                 numbered("the checksum of the place of local map ", local_map) + " is wrong");
   }
   return place;
 }
@@ -137,7 +140,8 @@ LocalMap readState(const Database& database, std::uint32_t local_map, std::uint3
   if (!query.step()) {
     throwDamaged(database.file(), numbered("the features of local map ", local_map) + " are missing");
   }
-  const std::string name = numbered("local map ", local_map) + numbered(" after traversal ", unsigned32(query, 0));
+  const std::string name =
+      numbered("local map ", local_map) + numbered(" after traversal ", unsigned32(query, 0));
   const Bytes features = query.blob(1);
   if (unsigned32(query, 2) != stateChecksum(local_map, unsigned32(query, 0), features)) {
     throwDamaged(database.file(), "the checksum of " + name + " is wrong");
@@ -161,7 +165,8 @@ Bytes readPng(const Database& database, std::uint32_t local_map) {
   }
   Bytes png = query.blob(0);
   if (unsigned32(query, 1) != imageChecksum(local_map, png)) {
-    throwDamaged(database.file(), numbered("the checksum of the image of local map ", local_map) + " is wrong");
+    throwDamaged(database.file(),
+                 numbered("the checksum of the image of local map ", local_map) + " is wrong");
   }
   return png;
 }

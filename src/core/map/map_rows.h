@@ -11,8 +11,8 @@
 
 namespace perennial {
 
-// Reading and writing the tables of a map file, row by row, with their checksums. Every reader throws MapError, naming
-// the file and the row, when a row is missing or damaged.
+// Reading and writing the tables of a map file, row by row, with their checksums. Every reader throws
+// MapError, naming the file and the row, when a row is missing or damaged.
 
 [[noreturn]] void throwDamaged(const std::string& file, const std::string& what);
 
@@ -51,8 +51,8 @@ LocalMap readState(const Database& database, std::uint32_t local_map, std::uint3
 /// Stored PNG, not decoded.
 Bytes readPng(const Database& database, std::uint32_t local_map);
 
-/// An integer column that holds a uint32; -1 cast, that is 0xFFFFFFFF, for anything else, which no checksum agrees with
-/// by more than chance.
+/// An integer column that holds a uint32; -1 cast, that is 0xFFFFFFFF, for anything else, which no checksum
+/// agrees with by more than chance.
 std::uint32_t unsigned32(const Statement& row, int column);
 
 }  // namespace perennial

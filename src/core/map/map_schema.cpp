@@ -6,12 +6,13 @@
 namespace perennial {
 namespace {
 
-// Numbers that must come back to the last bit stand in columns without a type: SQLite stores whole numbers in REAL
-// columns as integers, which loses the sign of -0.
+// Numbers that must come back to the last bit stand in columns without a type: SQLite stores whole numbers in
+// REAL columns as integers, which loses the sign of -0.
 const std::vector<std::string>& statements() {
   static const std::vector<std::string> kStatements = {
       "CREATE TABLE meta(key TEXT PRIMARY KEY NOT NULL, value NOT NULL, crc INTEGER NOT NULL) WITHOUT ROWID",
-      "CREATE TABLE profile(entry INTEGER PRIMARY KEY, distance_m NOT NULL, forward NOT NULL, angular NOT NULL, "
+      "CREATE TABLE profile(entry INTEGER PRIMARY KEY, distance_m NOT NULL, forward NOT NULL, angular NOT "
+      "NULL, "
       "flipper NOT NULL, crc INTEGER NOT NULL)",
       "CREATE TABLE local_map(local_map INTEGER PRIMARY KEY, distance_m NOT NULL, stamp_s NOT NULL, "
       "crc INTEGER NOT NULL)",

@@ -2,9 +2,8 @@
 
 #include <functional>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "map/checksum_vfs.h"
+#include "map/map_image.h"
 
 namespace perennial {
 namespace {
@@ -14,7 +13,8 @@ constexpr std::size_t kMaxProblems = 1000;
 
 class Verification {
  public:
-  Verification(const Database& database, const StoredMetadata& stored) : database_(database), stored_(stored) {}
+  Verification(const Database& database, const StoredMetadata& stored)
+      : database_(database), stored_(stored) {}
 
   std::vector<std::string> run() {
     attempt([this] { checkPages(); });
@@ -90,8 +90,9 @@ class Verification {
         database_.integer("SELECT count(*) FROM image") != expected) {
       report("the number of local maps or images is not " + std::to_string(expected));
     }
-    if (database_.integer("SELECT count(*) FROM state WHERE traversal NOT IN (SELECT traversal FROM traversal) OR "
-                          "local_map NOT IN (SELECT local_map FROM local_map)") != 0) {
+    if (database_.integer(
+            "SELECT count(*) FROM state WHERE traversal NOT IN (SELECT traversal FROM traversal) OR "
+            "local_map NOT IN (SELECT local_map FROM local_map)") != 0) {
       report("there are states of traversals or local maps that do not exist");
     }
   }
@@ -102,19 +103,12 @@ class Verification {
       attempt([&] {
         const Place place = readPlace(database_, i);
         if (!(place.distance_m >= last_distance_m) || place.distance_m > stored_.metadata.length_m) {
-          report("local map " + std::to_string(i) + " lies before the one before it or beyond the path's end");
+          report("local map " + std::to_string(i) +
+                 " lies before the one before it or beyond the path's end");
         }
         last_distance_m = place.distance_m;
-        checkImage(i);
+        readImage(database_, i, stored_.metadata);
       });
-    }
-  }
-
-  void checkImage(std::uint32_t local_map) {
-    const cv::Mat image = cv::imdecode(readPng(database_, local_map), cv::IMREAD_UNCHANGED);
-    if (image.type() != CV_8UC1 || image.cols != stored_.metadata.image_width ||
-        image.rows != stored_.metadata.image_height) {
-      report("the image of local map " + std::to_string(local_map) + " is not what it should be");
     }
   }
 

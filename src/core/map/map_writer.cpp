@@ -1,10 +1,9 @@
 #include <cmath>
 #include <optional>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "map/checksum_vfs.h"
 #include "map/local_map_codec.h"
+#include "map/map_image.h"
 #include "map/map_rows.h"
 #include "map/map_schema.h"
 #include "map/publish_file.h"
@@ -13,15 +12,17 @@
 
 namespace perennial {
 
-/// One transaction from the first local map to the last. Nobody else looks at the partial file and it is worthless
-/// after a crash, so it needs neither journal nor syncing; SQLite's cache is bounded, what exceeds it goes to the file.
+/// One transaction from the first local map to the last. Nobody else looks at the partial file and it is
+/// worthless after a crash, so it needs neither journal nor syncing; SQLite's cache is bounded, what exceeds
+/// it goes to the file.
 struct MapWriter::Implementation {
   Implementation(const std::string& file, const MapMetadata& metadata_in, bool overwrite_in)
       : metadata(metadata_in), overwrite(overwrite_in), partial(file) {
     const Page page = emptyDatabase(kMapApplicationId);
     partial.append(page.data(), page.size());
     database.emplace(Database::openMap(partial.path()));
-    database->execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE");
+    database->execute(
+        "PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE");
     createSchema(*database);
     insert_place.emplace(*database, "INSERT INTO local_map VALUES(?, ?, ?, ?)");
     insert_image.emplace(*database, "INSERT INTO image VALUES(?, ?, ?)");
@@ -48,7 +49,8 @@ struct MapWriter::Implementation {
 
 void MapWriter::Implementation::requireSound() const {
   if (broken) {
-    throw MapError("map '" + metadata.name + "': writing it has failed before (disk full?); teach the path again");
+    throw MapError("map '" + metadata.name +
+                   "': writing it has failed before (disk full?); teach the path again");
   }
 }
 
@@ -66,28 +68,29 @@ void MapWriter::Implementation::check(const LocalMap& map, const cv::Mat& image)
     throw MapError(name + ": " + problem);
   }
   if (map.distance_m < last_distance_m) {
-    throw MapError(name + ": its distance, " + std::to_string(map.distance_m) + " m, is less than the last one's, " +
-                   std::to_string(last_distance_m) + " m");
+    throw MapError(name + ": its distance, " + std::to_string(map.distance_m) +
+                   " m, is less than the last one's, " + std::to_string(last_distance_m) + " m");
   }
   if (image.type() != CV_8UC1 || image.cols != metadata.image_width || image.rows != metadata.image_height) {
-    throw ImageError(name + ": its image is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-                     " px of OpenCV type " + std::to_string(image.type()) + " instead of grey (0) and " +
-                     std::to_string(metadata.image_width) + "x" + std::to_string(metadata.image_height) + " px");
+    throw ImageError(name + ": its image is " + std::to_string(image.cols) + "x" +
+                     std::to_string(image.rows) + " px of OpenCV type " + std::to_string(image.type()) +
+                     " instead of grey (0) and " + std::to_string(metadata.image_width) + "x" +
+                     std::to_string(metadata.image_height) + " px");
   }
 }
 
 void MapWriter::Implementation::add(const LocalMap& map, const cv::Mat& image) {
   const std::int64_t index = map.index;
-  Bytes png;
-  if (!cv::imencode(".png", image, png)) {
-    throw ImageError("map '" + metadata.name + "': image of local map " + std::to_string(index) + " gives no PNG");
-  }
+  const Bytes png = encodeImage(image);
   const Bytes features = encodeLocalMap(map);
   broken = true;
   insert_place->bind(0, index).bind(1, map.distance_m).bind(2, map.stamp_s);
   insert_place->bind(3, std::int64_t{placeChecksum(map.index, map.distance_m, map.stamp_s)}).run();
   insert_image->bind(0, index).bind(1, png).bind(2, std::int64_t{imageChecksum(map.index, png)}).run();
-  insert_state->bind(0, index).bind(1, features).bind(2, std::int64_t{stateChecksum(map.index, 0, features)}).run();
+  insert_state->bind(0, index)
+      .bind(1, features)
+      .bind(2, std::int64_t{stateChecksum(map.index, 0, features)})
+      .run();
   broken = false;
   ++local_maps;
   last_distance_m = map.distance_m;
@@ -135,7 +138,8 @@ void MapWriter::finish(const PathProfile& profile, double length_m) {
     throw MapError(name + " has no local maps: nothing was taught");
   }
   if (!std::isfinite(length_m) || length_m < implementation_->last_distance_m) {
-    throw MapError(name + ": its length, " + std::to_string(length_m) + " m, is less than its last local map's distance");
+    throw MapError(name + ": its length, " + std::to_string(length_m) +
+                   " m, is less than its last local map's distance");
   }
   if (implementation_->database) {
     implementation_->complete(profile, length_m);

@@ -45,15 +45,16 @@ void syncFolder(const std::string& file) {
   }
 }
 
-/// Whether a partial file is complete: SQLite's application_id and user_version stand big-endian at 68 and 60.
+/// Whether a partial file is complete: SQLite's application_id and user_version stand big-endian at 68
+/// and 60.
 bool isFinishedMap(int descriptor) {
   std::array<std::uint8_t, 72> header{};
   if (::pread(descriptor, header.data(), header.size(), 0) != static_cast<ssize_t>(header.size())) {
     return false;
   }
   const auto bigEndian = [&header](std::size_t i) {
-    return std::uint32_t{header[i]} << 24 | std::uint32_t{header[i + 1]} << 16 | std::uint32_t{header[i + 2]} << 8 |
-           std::uint32_t{header[i + 3]};
+    return std::uint32_t{header[i]} << 24 | std::uint32_t{header[i + 1]} << 16 |
+           std::uint32_t{header[i + 2]} << 8 | std::uint32_t{header[i + 3]};
   };
   return bigEndian(68) == kMapApplicationId && bigEndian(60) > 0;
 }
@@ -61,8 +62,8 @@ bool isFinishedMap(int descriptor) {
 bool isSameFile(int descriptor, const std::string& path) {
   struct stat opened {};
   struct stat named {};
-  return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-         opened.st_ino == named.st_ino;
+  return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 /// rename() that fails with EEXIST instead of replacing a file.
@@ -92,7 +93,8 @@ std::optional<Database> heldForReplacement(const std::string& file) {
     return database;
   } catch (const SqliteError& error) {
     if (error.code() == SQLITE_BUSY) {
-      throw MapError("map '" + file + "' cannot be replaced while another program is using it: stop that first");
+      throw MapError("map '" + file +
+                     "' cannot be replaced while another program is using it: stop that first");
     }
   }
   return std::nullopt;
@@ -105,7 +107,8 @@ bool fileExists(const std::string& file) {
   return fs::exists(file, problem);
 }
 
-PartialFile::PartialFile(const std::string& final_file) : final_(final_file), path_(final_file + kPartialSuffix) {
+PartialFile::PartialFile(const std::string& final_file)
+    : final_(final_file), path_(final_file + kPartialSuffix) {
   std::error_code problem;
   fs::create_directories(folderOf(final_file), problem);
   if (problem) {
@@ -115,7 +118,8 @@ PartialFile::PartialFile(const std::string& final_file) : final_(final_file), pa
   lock();
   if (isFinishedMap(descriptor_)) {
     ::close(descriptor_);
-    throw MapError("'" + path_ + "' holds a finished map that could not be given its name: move or remove it first");
+    throw MapError("'" + path_ +
+                   "' holds a finished map that could not be given its name: move or remove it first");
   }
   if (::ftruncate(descriptor_, 0) != 0) {
     const std::string reason = systemError();
@@ -136,7 +140,8 @@ void PartialFile::lock() {
     }
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       ::close(descriptor_);
-      throw MapError("'" + path_ + "' is being written by another program: wait for it, or choose another name");
+      throw MapError("'" + path_ +
+                     "' is being written by another program: wait for it, or choose another name");
     }
     // Between opening and locking, the file may have been given its final name by the one that wrote it.
   } while (!isSameFile(descriptor_, path_));

@@ -7,12 +7,12 @@ namespace perennial {
 /// False also when one must not look.
 bool fileExists(const std::string& file);
 
-/// A file that is being written under another name, with an advisory lock (flock) that tells a live one from one that
-/// a crash left behind. Throws MapError.
+/// A file that is being written under another name, with an advisory lock (flock) that tells a live one from
+/// one that a crash left behind. Throws MapError.
 class PartialFile {
  public:
-  /// Creates `<final_file>.partial`, empty, and its folder. One left behind by a crash is replaced; one that another
-  /// program is writing, or that is a complete map which could not be given its name, is refused.
+  /// Creates `<final_file>.partial`, empty, and its folder. One left behind by a crash is replaced; one that
+  /// another program is writing, or that is a complete map which could not be given its name, is refused.
   explicit PartialFile(const std::string& final_file);
   /// Removes the file unless it was published or kept.
   ~PartialFile();
@@ -25,8 +25,9 @@ class PartialFile {
   /// From now on the file is worth keeping, whatever happens.
   void keep() { remove_ = false; }
 
-  /// Syncs, gives the file its final name in one step, and syncs the folder. Without `overwrite`, a file that has the
-  /// name already stays and the error says where the new one is; there is no moment at which it could be replaced.
+  /// Syncs, gives the file its final name in one step, and syncs the folder. Without `overwrite`, a file that
+  /// has the name already stays and the error says where the new one is; there is no moment at which it could
+  /// be replaced.
   void publish(bool overwrite);
 
  private:

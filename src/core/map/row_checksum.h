@@ -1,17 +1,18 @@
 #pragma once
 
+#include <boost/crc.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-#include <boost/crc.hpp>
-
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "map files are little-endian, as is every robot computer");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+              "map files are little-endian, as is every robot computer");
 
 namespace perennial {
 
-/// CRC-32 (the one of PNG and zip) over the values of one row, in the order in which they are added. Numbers count
-/// as their little-endian bytes, texts as their length and their bytes. docs/map_format.md lists what each row adds.
+/// CRC-32 (the one of PNG and zip) over the values of one row, in the order in which they are added. Numbers
+/// count as their little-endian bytes, texts as their length and their bytes. docs/map_format.md lists what
+/// each row adds.
 class RowChecksum {
  public:
   RowChecksum& add(std::uint32_t value) { return addBytes(&value, sizeof(value)); }

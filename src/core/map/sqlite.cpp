@@ -16,10 +16,12 @@ std::string remedy(int code) {
       return "another program is using it; wait for it to finish or stop it";
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
-      return "the file is damaged; `map_tool verify` lists where. Restore it from a copy, or teach the path again";
+      return "the file is damaged; `map_tool verify` lists where. Restore it from a copy, or teach the path "
+             "again";
     case SQLITE_READONLY:
-      return code == SQLITE_READONLY_DBMOVED ? "the file was replaced or removed after it was opened; open it again"
-                                             : "check the permissions of the file and its folder";
+      return code == SQLITE_READONLY_DBMOVED
+                 ? "the file was replaced or removed after it was opened; open it again"
+                 : "check the permissions of the file and its folder";
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_AUTH:
@@ -30,7 +32,8 @@ std::string remedy(int code) {
 }
 
 [[noreturn]] void throwError(sqlite3* handle, const std::string& file, int code) {
-  std::string message = "map '" + file + "': " + (handle == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(handle));
+  std::string message =
+      "map '" + file + "': " + (handle == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(handle));
   const int system_error = handle == nullptr ? 0 : sqlite3_system_errno(handle);
   if ((code & 0xFF) == SQLITE_IOERR && system_error != 0) {
     message += std::string(" (") + std::strerror(system_error) + ")";
@@ -100,7 +103,8 @@ Statement& Statement::bind(int parameter, double value) {
 }
 
 Statement& Statement::bind(int parameter, const std::string& text) {
-  check(sqlite3_bind_text(handle_.get(), parameter + 1, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
+  check(sqlite3_bind_text(handle_.get(), parameter + 1, text.data(), static_cast<int>(text.size()),
+                          SQLITE_TRANSIENT));
   return *this;
 }
 

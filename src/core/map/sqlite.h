@@ -1,12 +1,12 @@
 #pragma once
 
+#include <sqlite3.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <sqlite3.h>
 
 #include "perennial/core/error.h"
 
@@ -26,8 +26,8 @@ class SqliteError : public MapError {
 /// One connection. One thread at a time.
 class Database {
  public:
-  /// An existing map file, through the layer of page checksums; for reading alone where writing is not allowed. Does
-  /// not look into the file.
+  /// An existing map file, through the layer of page checksums; for reading alone where writing is not
+  /// allowed. Does not look into the file.
   static Database openMap(const std::string& file);
   /// An empty database on disk that vanishes with the connection; `file` is named in errors.
   static Database openTemporary(const std::string& file);

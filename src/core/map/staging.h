@@ -9,8 +9,9 @@
 
 namespace perennial {
 
-/// States of local maps that a traversal has changed and not committed. They wait in a temporary database of their
-/// own, on disk (SQLITE_TMPDIR, TMPDIR, /var/tmp or /tmp), so that neither memory nor the map file grows.
+/// States of local maps that a traversal has changed and not committed. They wait in a temporary database of
+/// their own, on disk (SQLITE_TMPDIR, TMPDIR, /var/tmp or /tmp), so that neither memory nor the map file
+/// grows.
 class Staging {
  public:
   /// `file`: the map, for error messages.
