@@ -1,5 +1,7 @@
 #include "faulty_vfs.h"
 
+#include <sqlite3.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -7,8 +9,6 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <sqlite3.h>
 
 namespace perennial {
 namespace {
@@ -115,7 +115,9 @@ struct FaultyDiskMethods {
     return real(file)->pMethods->xFileSize(real(file), bytes);
   }
   static int lock(sqlite3_file* file, int level) { return real(file)->pMethods->xLock(real(file), level); }
-  static int unlock(sqlite3_file* file, int level) { return real(file)->pMethods->xUnlock(real(file), level); }
+  static int unlock(sqlite3_file* file, int level) {
+    return real(file)->pMethods->xUnlock(real(file), level);
+  }
   static int reserved(sqlite3_file* file, int* result) {
     return real(file)->pMethods->xCheckReservedLock(real(file), result);
   }
@@ -126,9 +128,9 @@ struct FaultyDiskMethods {
   static int device(sqlite3_file* file) { return real(file)->pMethods->xDeviceCharacteristics(real(file)); }
 
   static const sqlite3_io_methods* table() {
-    static const sqlite3_io_methods methods = {1,      close,   read,   write, truncate, sync,   size,    lock,    unlock,
-                                               reserved, control, sector, device, nullptr,  nullptr, nullptr, nullptr, nullptr,
-                                               nullptr};
+    static const sqlite3_io_methods methods = {1,       close,   read,     write,   truncate, sync,   size,
+                                               lock,    unlock,  reserved, control, sector,   device, nullptr,
+                                               nullptr, nullptr, nullptr,  nullptr, nullptr};
     return &methods;
   }
 

@@ -5,9 +5,10 @@
 
 namespace perennial {
 
-/// A disk with faults for tests of whatever stands on SQLite: a VFS that becomes SQLite's default one, forwards to the
-/// platform's, counts, and fails when told to. Events that change a file (write, sync, truncate, delete) are numbered
-/// from 1 since the last `reset()`. Temporary files of SQLite's own are not touched. One thread.
+/// A disk with faults for tests of whatever stands on SQLite: a VFS that becomes SQLite's default one,
+/// forwards to the platform's, counts, and fails when told to. Events that change a file (write, sync,
+/// truncate, delete) are numbered from 1 since the last `reset()`. Temporary files of SQLite's own are not
+/// touched. One thread.
 class FaultyDisk {
  public:
   /// Becomes the default VFS at the first call, for the life of the process.
@@ -19,8 +20,9 @@ class FaultyDisk {
   /// The event with this number, and every write after it, fails with this code of SQLite's (SQLITE_FULL).
   void failFrom(std::size_t event, int code);
 
-  /// The power fails at this event: of every write since the last sync of its file, each sector of 512 bytes is on
-  /// the disk or not, by chance; so is a part of the event itself. Every later operation fails until `reset()`.
+  /// The power fails at this event: of every write since the last sync of its file, each sector of 512 bytes
+  /// is on the disk or not, by chance; so is a part of the event itself. Every later operation fails until
+  /// `reset()`.
   void losePowerAt(std::size_t event, std::uint64_t seed);
 
   std::size_t events() const { return events_; }

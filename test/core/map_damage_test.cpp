@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 
@@ -26,7 +29,8 @@ void writeContent(const std::string& file, const Content& content) {
 
 void runSql(const std::string& file, const char* sql, const char* vfs = nullptr) {
   sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open_v2(file.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, vfs), SQLITE_OK);
+  ASSERT_EQ(sqlite3_open_v2(file.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, vfs),
+            SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
   sqlite3_close(database);
 }
@@ -143,6 +147,32 @@ TEST_F(MapDamageTest, aDamagedImageIsNamed) {
   expectMentions(errorOf([&] { MapFile(file_).readImage(5); }), {"image of local map 5", "checksum"});
 }
 
+TEST_F(MapDamageTest, anImageThatIsNoneIsNamedThoughItsChecksumIsRight) {
+  const auto crcOf = [](const std::vector<std::uint8_t>& png) {
+    boost::crc_32_type crc;
+    const std::uint32_t local_map = 5;
+    crc.process_bytes(&local_map, sizeof(local_map));
+    crc.process_bytes(png.data(), png.size());
+    return std::to_string(crc.checksum());
+  };
+  forge(file_, ("UPDATE image SET png = x'', crc = " + crcOf({}) + " WHERE local_map = 5").c_str());
+  expectMentions(errorOf([&] { MapFile(file_).readImage(5); }),
+                 {"image of local map 5", "no grey PNG of 12x8 px"});
+  // The beginning of a PNG that promises the right size, and nothing else.
+  std::vector<std::uint8_t> png = MapFile(file_).readImagePng(4);
+  png.resize(30);
+  std::string hex;
+  for (const std::uint8_t byte : png) {
+    char digits[3];
+    std::snprintf(digits, sizeof(digits), "%02x", byte);
+    hex += digits;
+  }
+  forge(file_,
+        ("UPDATE image SET png = x'" + hex + "', crc = " + crcOf(png) + " WHERE local_map = 5").c_str());
+  expectMentions(errorOf([&] { MapFile(file_).readImage(5); }),
+                 {"image of local map 5", "no grey PNG of 12x8 px"});
+}
+
 TEST_F(MapDamageTest, changedRowsAreFound) {
   const Content sound = contentOf(file_);
   const std::vector<const char*> forgeries = {
@@ -207,8 +237,9 @@ TEST_F(MapDamageTest, notAMap) {
 }
 
 TEST_F(MapDamageTest, anotherProgramsDatabase) {
-  for (const char* sql : {"PRAGMA page_size=4096; CREATE TABLE t(a)", "PRAGMA page_size=1024; CREATE TABLE t(a)",
-                          "PRAGMA page_size=65536; CREATE TABLE t(a)", "PRAGMA journal_mode=WAL; CREATE TABLE t(a)"}) {
+  for (const char* sql :
+       {"PRAGMA page_size=4096; CREATE TABLE t(a)", "PRAGMA page_size=1024; CREATE TABLE t(a)",
+        "PRAGMA page_size=65536; CREATE TABLE t(a)", "PRAGMA journal_mode=WAL; CREATE TABLE t(a)"}) {
     fs::remove(file_);
     runSql(file_, sql);
     expectMentions(openingError(), {"not a map", "another program"});
@@ -247,7 +278,8 @@ TEST_F(MapDamageTest, anySqliteProgramReadsAMap) {
     *static_cast<std::string*>(text) += columns[0];
     return 0;
   };
-  EXPECT_EQ(sqlite3_exec(database, "PRAGMA integrity_check; SELECT count(*) FROM local_map", keep, &result, nullptr),
+  EXPECT_EQ(sqlite3_exec(database, "PRAGMA integrity_check; SELECT count(*) FROM local_map", keep, &result,
+                         nullptr),
             SQLITE_OK);
   sqlite3_close(database);
   EXPECT_EQ(result, "ok8");

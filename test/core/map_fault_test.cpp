@@ -48,7 +48,8 @@ class MapFaultTest : public testing::Test {
     const std::size_t traversals = map.traversals().size();
     const std::vector<LocalMap>& expected = traversals == 2 ? before_ : after_;
     for (const LocalMap& state : expected) {
-      if (!sameBits(map.read(state.index), state) || !sameBits(map.readAt(state.index, 0), taught_[state.index])) {
+      if (!sameBits(map.read(state.index), state) ||
+          !sameBits(map.readAt(state.index, 0), taught_[state.index])) {
         return 0;
       }
     }

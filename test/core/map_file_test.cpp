@@ -22,7 +22,8 @@ TEST_F(MapFileTest, givesBackEveryBit) {
     const MapFile map(file);
     ASSERT_EQ(map.size(), maps.size());
     for (const LocalMap& expected : maps) {
-      EXPECT_TRUE(sameBits(map.read(expected.index), expected)) << "seed " << seed << ", map " << expected.index;
+      EXPECT_TRUE(sameBits(map.read(expected.index), expected))
+          << "seed " << seed << ", map " << expected.index;
     }
     EXPECT_TRUE(map.verify().empty());
   }
@@ -105,7 +106,8 @@ TEST_F(MapFileTest, refusesLocalMapsThatDoNotExist) {
 
 TEST_F(MapFileTest, namesTheExtractionOfMapAndRobot) {
   EXPECT_NO_THROW(requireSameExtraction(testMetadata(), testMetadata().extraction));
-  const std::string error = errorOf([] { requireSameExtraction(testMetadata(), "surf-brief/1 features=300"); });
+  const std::string error =
+      errorOf([] { requireSameExtraction(testMetadata(), "surf-brief/1 features=300"); });
   EXPECT_NE(error.find("features=300"), std::string::npos) << error;
   EXPECT_NE(error.find("features=500"), std::string::npos) << error;
   EXPECT_NE(error.find("teach the path again"), std::string::npos) << error;
@@ -204,7 +206,8 @@ TEST_F(TraversalTest, keepsEveryState) {
   const MapFile reopened(file_);
   for (std::uint32_t traversal = 0; traversal < history.size(); ++traversal) {
     for (const LocalMap& expected : history[traversal]) {
-      EXPECT_TRUE(sameBits(reopened.readAt(expected.index, traversal), expected)) << "traversal " << traversal;
+      EXPECT_TRUE(sameBits(reopened.readAt(expected.index, traversal), expected))
+          << "traversal " << traversal;
     }
   }
   EXPECT_TRUE(reopened.verify().empty());

@@ -1,8 +1,8 @@
 #include "perennial/core/map_name.h"
 
-#include <fstream>
-
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "map_test_support.h"
 
@@ -20,17 +20,19 @@ TEST(MapName, acceptsPlainNames) {
 
 TEST(MapName, cannotLeaveTheFolder) {
   for (const std::string& name :
-       {std::string(), std::string("."), std::string(".."), std::string("../x"), std::string("a/b"), std::string("/etc/x"),
-        std::string(".hidden"), std::string("-rf"), std::string("a b"), std::string("a\nb"), std::string("a\0b", 3),
-        std::string("caf\xc3\xa9"), std::string("a\\b"), std::string("~"), std::string("$(x)"), std::string(101, 'x'),
-        std::string("garden.perennial")}) {
-    EXPECT_NE(errorOf([&] { mapFile("/maps", name); }).find("cannot be the name of a map"), std::string::npos) << name;
+       {std::string(), std::string("."), std::string(".."), std::string("../x"), std::string("a/b"),
+        std::string("/etc/x"), std::string(".hidden"), std::string("-rf"), std::string("a b"),
+        std::string("a\nb"), std::string("a\0b", 3), std::string("caf\xc3\xa9"), std::string("a\\b"),
+        std::string("~"), std::string("$(x)"), std::string(101, 'x'), std::string("garden.perennial")}) {
+    EXPECT_NE(errorOf([&] { mapFile("/maps", name); }).find("cannot be the name of a map"), std::string::npos)
+        << name;
   }
 }
 
 TEST(MapName, anUnknownMapIsToldFromThoseThatExist) {
   TemporaryFolder folder;
-  for (const char* file : {"shed.perennial", "garden.perennial", "garden.perennial.partial", "notes.txt", ".perennial"}) {
+  for (const char* file :
+       {"shed.perennial", "garden.perennial", "garden.perennial.partial", "notes.txt", ".perennial"}) {
     std::ofstream(folder / file) << "x";
   }
   EXPECT_EQ(listMaps(folder / ""), (std::vector<std::string>{"garden", "shed"}));

@@ -1,17 +1,16 @@
 #pragma once
 
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <opencv2/core.hpp>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <opencv2/core.hpp>
 
 #include "perennial/core/error.h"
 #include "perennial/core/map_file.h"
@@ -101,13 +100,15 @@ inline cv::Mat randomImage(std::mt19937_64& random, int width = 12, int height =
 
 template <typename Value>
 bool sameBits(const std::vector<Value>& a, const std::vector<Value>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0);
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0);
 }
 
 inline bool sameBits(const LocalMap& a, const LocalMap& b) {
   return a.index == b.index && a.next_id == b.next_id && sameBits<double>({a.distance_m}, {b.distance_m}) &&
          sameBits<double>({a.stamp_s}, {b.stamp_s}) && a.strategy == b.strategy &&
-         a.numbers_per_feature == b.numbers_per_feature && sameBits(a.features.keypoints, b.features.keypoints) &&
+         a.numbers_per_feature == b.numbers_per_feature &&
+         sameBits(a.features.keypoints, b.features.keypoints) &&
          sameBits(a.features.descriptors, b.features.descriptors) && sameBits(a.ids, b.ids) &&
          sameBits(a.numbers, b.numbers) && sameBits(a.map_numbers, b.map_numbers);
 }
@@ -121,8 +122,8 @@ inline PathProfile testProfile() {
 }
 
 /// Writes a map of `local_maps` random local maps, the same for the same seed.
-inline std::vector<LocalMap> writeMap(const std::string& file, std::uint32_t local_maps, std::uint64_t seed = 1,
-                                      bool overwrite = false) {
+inline std::vector<LocalMap> writeMap(const std::string& file, std::uint32_t local_maps,
+                                      std::uint64_t seed = 1, bool overwrite = false) {
   std::mt19937_64 random(seed);
   MapWriter writer(file, testMetadata(), overwrite);
   std::vector<LocalMap> maps;

@@ -1,14 +1,13 @@
 // Runs the tool itself, as a user does; MAP_TOOL is its path.
+#include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <sstream>
-
-#include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
-#include <yaml-cpp/yaml.h>
+#include <sstream>
 
 #include "map_test_support.h"
 
@@ -64,7 +63,8 @@ TEST_F(MapToolTest, listsLocalMapsAndMaps) {
   const Result local_maps = run("list " + file_);
   EXPECT_EQ(local_maps.status, 0);
   EXPECT_EQ(std::count(local_maps.output.begin(), local_maps.output.end(), '\n'), 5) << local_maps.output;
-  EXPECT_NE(local_maps.output.find("0.600  2023-11-14T22:13:20.300Z"), std::string::npos) << local_maps.output;
+  EXPECT_NE(local_maps.output.find("0.600  2023-11-14T22:13:20.300Z"), std::string::npos)
+      << local_maps.output;
   std::ofstream(folder_ / "broken.perennial") << "x";
   const Result maps = run("list " + folder_ / "");
   EXPECT_EQ(maps.status, 0);

@@ -1,9 +1,8 @@
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "map_test_support.h"
 
@@ -96,7 +95,8 @@ TEST_F(MapWriterTest, keepsACompleteMapThatCouldNotBeNamed) {
   }
   EXPECT_EQ(MapFile(partial_).size(), 5U);
   fs::remove(file_);
-  EXPECT_NE(errorOf([&] { MapWriter(file_, testMetadata(), false); }).find("move or remove it"), std::string::npos);
+  EXPECT_NE(errorOf([&] { MapWriter(file_, testMetadata(), false); }).find("move or remove it"),
+            std::string::npos);
 }
 
 TEST_F(MapWriterTest, overwritesInOneStepWhenAsked) {
@@ -161,7 +161,8 @@ TEST_F(MapWriterTest, replacesWhatACrashLeftBehind) {
 
 TEST_F(MapWriterTest, refusesASecondTeacherOfOneMap) {
   MapWriter first(file_, testMetadata(), false);
-  EXPECT_NE(errorOf([&] { MapWriter(file_, testMetadata(), false); }).find("another program"), std::string::npos);
+  EXPECT_NE(errorOf([&] { MapWriter(file_, testMetadata(), false); }).find("another program"),
+            std::string::npos);
   addSome(first);
   first.finish({}, 1.0);
   EXPECT_EQ(MapFile(file_).size(), 3U);
@@ -171,7 +172,8 @@ TEST_F(MapWriterTest, refusesWhatIsNoMap) {
   MapWriter writer(file_, testMetadata(), false);
   EXPECT_NE(errorOf([&] { writer.finish({}, 1.0); }).find("no local maps"), std::string::npos);
   addSome(writer, 2);
-  EXPECT_THROW(writer.add(randomLocalMap(3, random_), randomImage(random_)), MapError) << "an index is missing";
+  EXPECT_THROW(writer.add(randomLocalMap(3, random_), randomImage(random_)), MapError)
+      << "an index is missing";
   LocalMap behind = randomLocalMap(2, random_);
   behind.distance_m = 0.1;
   EXPECT_THROW(writer.add(behind, randomImage(random_)), MapError);
