@@ -47,6 +47,11 @@ const ActiveMap* ActiveMapWindow::nearest(double distance_m) const {
   return may_be_nearer_before || may_be_nearer_after ? nullptr : &*best;
 }
 
+const ActiveMap* ActiveMapWindow::find(std::uint32_t index) const {
+  const bool held = !maps_.empty() && index >= maps_.front().index && index <= maps_.back().index;
+  return held ? &maps_[index - maps_.front().index] : nullptr;
+}
+
 void ActiveMapWindow::forgetBefore(double distance_m, double keep_m) {
   while (maps_.size() > 1 && maps_.front().distance_m < distance_m - keep_m) {
     maps_.pop_front();

@@ -23,13 +23,15 @@ RepeatSession::RepeatSession(const MapMetadata& map, const PathProfile& profile,
       length_m_(map.length_m),
       extractor_(settings.extraction),
       registration_(settings.registration),
-      steering_(settings.steering) {
+      steering_(settings.steering),
+      along_path_(settings.along_path) {
   requireSameExtraction(map, settings.extraction.describe());
 }
 
 void RepeatSession::beginTraversal(double start_m, std::optional<double> travelled_m) {
   start_m_ = start_m;
   start_travelled_m_ = travelled_m;
+  along_path_.reset();
   window_.reset(local_maps_);
 }
 
@@ -49,6 +51,9 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   if (!start_travelled_m_) {
     start_travelled_m_ = travelled_m;
   }
+  const double interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
+  previous_travelled_m_ = travelled_m;
+
   NavigationStep step;
   step.stamp_s = stamp_s;
   step.distance_m = distance(travelled_m);
@@ -61,16 +66,37 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   step.view = extractor_.extract(image);
   step.registration = registerView(registration_, *map, step.view);
   step.positions = map->alternatives[step.registration.alternative].positions;
-  step.velocity = steer(profile_.travellingAt(step.distance_m + preview(travelled_m)), step.registration.result.displacement_px,
-                        focal_length_px_, steering_);
+  correctDistance(step, interval_m);
+  step.velocity = velocityFor(step, interval_m);
   window_.forgetBefore(step.distance_m, kKeepBehind_m);
   return step;
 }
 
-double RepeatSession::preview(double travelled_m) {
-  const double interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
-  previous_travelled_m_ = travelled_m;
-  return std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
+void RepeatSession::correctDistance(const NavigationStep& step, double interval_m) {
+  if (!along_path_.enabled() || !step.registration.result.displacement_px || step.local_map == 0) {
+    return;
+  }
+  const ActiveMap* before = window_.find(step.local_map - 1);
+  const ActiveMap* after = window_.find(step.local_map + 1);
+  if (before == nullptr || after == nullptr) {
+    return;
+  }
+  const auto evidence = [&](const ActiveMap& map) {
+    return PlaceEvidence{map.distance_m, registerView(registration_, map, step.view).result.inliers};
+  };
+  const auto seen_m = placeOfView(evidence(*before), {step.local_map_distance_m, step.registration.result.inliers},
+                                  evidence(*after));
+  if (seen_m) {
+    along_path_.update(step.distance_m, *seen_m, interval_m);
+  }
+}
+
+Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_m) const {
+  // The command holds until the next image: the velocity taught half an image's way ahead is its best mean. Looked up at
+  // the image itself, every curve would be entered that much too late.
+  const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
+  return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
+               focal_length_px_, steering_);
 }
 
 Observation observationOf(const NavigationStep& step) {

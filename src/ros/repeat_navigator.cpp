@@ -29,7 +29,7 @@ constexpr std::size_t kMessagesKept = 64;
 /// Images kept while their odometry is on its way.
 constexpr std::size_t kImagesKept = 30;
 
-const std::vector<std::string> kGroups{"extraction", "registration", "steering", "odometer"};
+const std::vector<std::string> kGroups{"extraction", "registration", "steering", "along_path", "odometer"};
 
 }  // namespace
 
@@ -48,7 +48,8 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
       settings_(loadNode<RepeatNavigatorSettings>(private_nh_, kGroups)),
       repeat_settings_{loadGroup<ExtractionSettings>(private_nh_, "extraction"),
                        loadGroup<RegistrationSettings>(private_nh_, "registration"),
-                       loadGroup<SteeringSettings>(private_nh_, "steering")},
+                       loadGroup<SteeringSettings>(private_nh_, "steering"),
+                       loadGroup<AlongPathSettings>(private_nh_, "along_path")},
       odometer_(loadGroup<OdometerSettings>(private_nh_, "odometer")),
       images_(settings_.every_image ? 0 : kImagesKept),
       traversals_(nh_),

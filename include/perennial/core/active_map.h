@@ -45,6 +45,9 @@ class ActiveMapWindow {
   /// held: when the nearest one held is the first or last of them and a nearer one may exist beyond.
   const ActiveMap* nearest(double distance_m) const;
 
+  /// The local map with this index; nullptr when it is not held.
+  const ActiveMap* find(std::uint32_t index) const;
+
   /// Forgets maps that lie more than `keep_m` before this distance.
   void forgetBefore(double distance_m, double keep_m);
 

@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "perennial/core/active_map.h"
+#include "perennial/core/along_path.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/map_file.h"
 #include "perennial/core/map_strategy.h"
@@ -21,12 +22,13 @@ struct RepeatSettings {
   ExtractionSettings extraction;
   RegistrationSettings registration;
   SteeringSettings steering;
+  AlongPathSettings along_path;
 };
 
 /// What came of one image.
 struct NavigationStep {
   double stamp_s = 0.0;
-  double distance_m = 0.0;              ///< along the path
+  double distance_m = 0.0;              ///< along the path, as assumed before the image was seen
   std::uint32_t local_map = 0;          ///< index of the local map registered against
   double local_map_distance_m = 0.0;
   std::vector<std::uint32_t> positions; ///< of the features registered: position in the stored local map
@@ -48,7 +50,9 @@ class RepeatSession {
   void beginTraversal(double start_m, std::optional<double> travelled_m = std::nullopt);
 
   /// Place along the path; may lie beyond its end, which is the overshoot to begin the next traversal with.
-  double distance(double travelled_m) const { return start_m_ + travelled_m - start_travelled_m_.value_or(travelled_m); }
+  double distance(double travelled_m) const {
+    return start_m_ + travelled_m - start_travelled_m_.value_or(travelled_m) + along_path_.correction();
+  }
   bool atEnd(double travelled_m) const { return distance(travelled_m) >= length_m_; }
   double length() const { return length_m_; }
 
@@ -68,9 +72,9 @@ class RepeatSession {
   void setFocalLength(std::optional<double> focal_length_px) { focal_length_px_ = focal_length_px; }
 
  private:
-  /// A command holds until the next image, so the velocity taught half an image's way ahead is its best mean; looking
-  /// it up at the image itself would enter every curve half that way too late.
-  double preview(double travelled_m);
+  void correctDistance(const NavigationStep& step, double interval_m);
+  /// Velocity to send until the next image, `interval_m` after the last one.
+  Velocity velocityFor(const NavigationStep& step, double interval_m) const;
 
   MapMetadata map_;
   PathProfile profile_;
@@ -79,6 +83,7 @@ class RepeatSession {
   FeatureExtractor extractor_;
   HistogramRegistration registration_;
   SteeringSettings steering_;
+  AlongPathCorrection along_path_;
   std::optional<double> focal_length_px_;
 
   ActiveMapWindow window_;

@@ -8,7 +8,7 @@
 namespace perennial {
 
 struct SteeringSettings {
-  double gain_per_rad = 1.0;     ///< turn rate per radian of displacement, 1/s; used when the focal length is known
+  double gain_per_rad = 2.0;     ///< turn rate per radian of displacement, 1/s; used when the focal length is known
   double gain_per_px = 0.002;    ///< turn rate per pixel of displacement, rad/(s px); used when it is not
   double max_correction = 0.5;   ///< largest turn rate that a displacement may ask for, rad/s
   double max_forward = 1.5;      ///< largest forward and backward velocity sent, m/s
