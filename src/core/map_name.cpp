@@ -119,7 +119,8 @@ void requireWritableMapFile(const std::string& file, bool overwrite) {
   }
   const fs::path folder = nearestExisting(fs::absolute(fs::path(file)).parent_path());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw MapError("no map can be stored in " + fs::path(file).parent_path().string() + ": folder " + folder.string() +
+    throw MapError("no map can be stored in " + fs::path(file).parent_path().string() + ": folder " +
+                   folder.string() +
                    " cannot be written; choose another map folder or change its permissions");
   }
 }

@@ -1,8 +1,7 @@
 #include "map_commands.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -10,24 +9,24 @@
 #include "perennial/core/error.h"
 #include "perennial/core/map_file.h"
 #include "perennial/core/map_name.h"
+#include "perennial/core/utc_time.h"
 
 namespace perennial {
 namespace {
 
-/// UTC to the millisecond: "2026-06-21T20:30:00.000Z".
+/// A stamp for people.
 std::string dateTime(double stamp_s) {
-  const double milliseconds = std::round(stamp_s * 1000.0);
-  if (!(std::abs(milliseconds) < 1e14)) {
-    return std::to_string(stamp_s);
+  try {
+    return formatUtc(stamp_s);
+  } catch (const Error&) {
+    return std::to_string(stamp_s) + " s";  // out of the calendar's range
   }
-  const double whole_s = std::floor(milliseconds / 1000.0);
-  const auto seconds = static_cast<std::time_t>(whole_s);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char date[32];
-  std::strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%S", &parts);
-  char text[48];
-  std::snprintf(text, sizeof(text), "%s.%03dZ", date, static_cast<int>(milliseconds - whole_s * 1000.0));
+}
+
+/// The same for a column of a table.
+std::string dateTimeColumn(double stamp_s) {
+  std::string text = dateTime(stamp_s);
+  text.resize(std::max(text.size(), std::string("2026-06-21T20:30:00.123456Z").size()), ' ');
   return text;
 }
 
@@ -58,11 +57,11 @@ void listMap(const std::string& file_or_folder, std::ostream& out) {
     return listFolder(file_or_folder, out);
   }
   const MapFile map(file_or_folder);
-  out << "index  distance_m  stamp                     features  strategy\n" << std::fixed;
+  out << "index  distance_m  stamp                        features  strategy\n" << std::fixed;
   for (std::uint32_t i = 0; i < map.size(); ++i) {
     const LocalMap local = map.read(i);
     out << std::setw(5) << i << "  " << std::setw(10) << std::setprecision(3) << local.distance_m << "  "
-        << dateTime(local.stamp_s) << "  " << std::setw(8) << local.size() << "  "
+        << dateTimeColumn(local.stamp_s) << "  " << std::setw(8) << local.size() << "  "
         << (local.strategy.empty() ? "-" : local.strategy) << "\n";
   }
 }
@@ -101,10 +100,10 @@ bool verifyMap(const std::string& file, std::ostream& out) {
 
 void printHistory(const std::string& file, std::ostream& out) {
   const MapFile map(file);
-  out << "traversal  begin                     end                       updated maps  strategy\n";
+  out << "traversal  begin                        end                          updated maps  strategy\n";
   for (const TraversalInfo& traversal : map.traversals()) {
-    out << std::setw(9) << traversal.id << "  " << dateTime(traversal.start_stamp_s) << "  "
-        << dateTime(traversal.end_stamp_s) << "  " << std::setw(12) << traversal.updated_maps << "  "
+    out << std::setw(9) << traversal.id << "  " << dateTimeColumn(traversal.start_stamp_s) << "  "
+        << dateTimeColumn(traversal.end_stamp_s) << "  " << std::setw(12) << traversal.updated_maps << "  "
         << (traversal.id == 0 ? "(taught)" : traversal.strategy) << "\n";
   }
 }

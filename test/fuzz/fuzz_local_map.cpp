@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "map/local_map_codec.h"
+#include "core/map/local_map_codec.h"
 #include "perennial/core/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

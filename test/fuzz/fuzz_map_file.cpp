@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "map/checksum_vfs.h"
+#include "core/map/checksum_vfs.h"
 #include "perennial/core/error.h"
 #include "perennial/core/map_file.h"
 

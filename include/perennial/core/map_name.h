@@ -25,8 +25,8 @@ std::string existingMapFile(const std::string& folder, const std::string& name);
 /// be read.
 std::vector<std::string> listMaps(const std::string& folder);
 
-/// Throws MapError where a new map could not be stored at `file`: it exists already (unless `overwrite`), or its folder
-/// can be neither written nor created.
+/// Throws MapError where a new map could not be stored at `file`: it exists already (unless `overwrite`), or
+/// its folder can be neither written nor created.
 void requireWritableMapFile(const std::string& file, bool overwrite);
 
 }  // namespace perennial

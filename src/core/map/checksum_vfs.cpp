@@ -1,12 +1,12 @@
 // A VFS shim as described at https://sqlite.org/vfs.html, section 2.2; file format at
 // https://sqlite.org/fileformat2.html.
-#include "map/checksum_vfs.h"
+#include "core/map/checksum_vfs.h"
 
 #include <algorithm>
 #include <cstring>
 #include <new>
 
-#include "map/row_checksum.h"
+#include "core/map/row_checksum.h"
 
 namespace perennial {
 namespace {

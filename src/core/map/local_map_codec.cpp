@@ -1,11 +1,11 @@
-#include "map/local_map_codec.h"
+#include "core/map/local_map_codec.h"
 
 #include <cstddef>
 #include <cstring>
 #include <string>
 #include <type_traits>
 
-#include "map/row_checksum.h"
+#include "core/map/row_checksum.h"
 #include "perennial/core/error.h"
 
 namespace perennial {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "map/map_image.h"
-#include "map/map_opening.h"
-#include "map/map_rows.h"
-#include "map/map_verify.h"
-#include "map/staging.h"
+#include "core/map/map_image.h"
+#include "core/map/map_opening.h"
+#include "core/map/map_rows.h"
+#include "core/map/map_verify.h"
+#include "core/map/staging.h"
 
 namespace perennial {
 namespace {

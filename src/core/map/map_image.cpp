@@ -1,10 +1,10 @@
-#include "map/map_image.h"
+#include "core/map/map_image.h"
 
 #include <cstddef>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "map/map_rows.h"
+#include "core/map/map_rows.h"
 
 namespace perennial {
 namespace {

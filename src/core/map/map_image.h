@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "map/local_map_codec.h"
-#include "map/sqlite.h"
+#include "core/map/local_map_codec.h"
+#include "core/map/sqlite.h"
 #include "perennial/core/map_file.h"
 
 namespace perennial {

@@ -3,8 +3,8 @@
 #include <limits>
 #include <map>
 
-#include "map/map_rows.h"
-#include "map/row_checksum.h"
+#include "core/map/map_rows.h"
+#include "core/map/row_checksum.h"
 
 namespace perennial {
 namespace {

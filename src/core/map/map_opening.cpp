@@ -1,12 +1,12 @@
-#include "map/map_opening.h"
+#include "core/map/map_opening.h"
 
 #include <array>
 #include <cstring>
 #include <filesystem>
 
-#include "map/checksum_vfs.h"
-#include "map/map_rows.h"
-#include "map/map_schema.h"
+#include "core/map/checksum_vfs.h"
+#include "core/map/map_rows.h"
+#include "core/map/map_schema.h"
 
 namespace perennial {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "map/sqlite.h"
+#include "core/map/sqlite.h"
 
 namespace perennial {
 

@@ -1,8 +1,8 @@
-#include "map/map_rows.h"
+#include "core/map/map_rows.h"
 
 #include <limits>
 
-#include "map/row_checksum.h"
+#include "core/map/row_checksum.h"
 
 namespace perennial {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "map/local_map_codec.h"
-#include "map/sqlite.h"
+#include "core/map/local_map_codec.h"
+#include "core/map/sqlite.h"
 #include "perennial/core/map_file.h"
 
 namespace perennial {

@@ -1,4 +1,4 @@
-#include "map/map_schema.h"
+#include "core/map/map_schema.h"
 
 #include <string>
 #include <vector>

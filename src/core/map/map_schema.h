@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "map/sqlite.h"
+#include "core/map/sqlite.h"
 
 namespace perennial {
 

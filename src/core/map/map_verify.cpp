@@ -1,9 +1,9 @@
-#include "map/map_verify.h"
+#include "core/map/map_verify.h"
 
 #include <functional>
 
-#include "map/checksum_vfs.h"
-#include "map/map_image.h"
+#include "core/map/checksum_vfs.h"
+#include "core/map/map_image.h"
 
 namespace perennial {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "map/map_rows.h"
-#include "map/sqlite.h"
+#include "core/map/map_rows.h"
+#include "core/map/sqlite.h"
 
 namespace perennial {
 

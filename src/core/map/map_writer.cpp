@@ -1,13 +1,13 @@
 #include <cmath>
 #include <optional>
 
-#include "map/checksum_vfs.h"
-#include "map/local_map_codec.h"
-#include "map/map_image.h"
-#include "map/map_rows.h"
-#include "map/map_schema.h"
-#include "map/publish_file.h"
-#include "map/sqlite.h"
+#include "core/map/checksum_vfs.h"
+#include "core/map/local_map_codec.h"
+#include "core/map/map_image.h"
+#include "core/map/map_rows.h"
+#include "core/map/map_schema.h"
+#include "core/map/publish_file.h"
+#include "core/map/sqlite.h"
 #include "perennial/core/map_file.h"
 
 namespace perennial {

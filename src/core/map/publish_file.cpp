@@ -1,4 +1,4 @@
-#include "map/publish_file.h"
+#include "core/map/publish_file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "map/map_schema.h"
-#include "map/sqlite.h"
+#include "core/map/map_schema.h"
+#include "core/map/sqlite.h"
 #include "perennial/core/error.h"
 
 namespace perennial {

@@ -1,8 +1,8 @@
-#include "map/sqlite.h"
+#include "core/map/sqlite.h"
 
 #include <cstring>
 
-#include "map/checksum_vfs.h"
+#include "core/map/checksum_vfs.h"
 
 namespace perennial {
 namespace {

@@ -1,4 +1,4 @@
-#include "map/staging.h"
+#include "core/map/staging.h"
 
 namespace perennial {
 

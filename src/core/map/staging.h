@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "map/local_map_codec.h"
-#include "map/sqlite.h"
+#include "core/map/local_map_codec.h"
+#include "core/map/sqlite.h"
 
 namespace perennial {
 
