@@ -2,9 +2,10 @@
 
 #include <cmath>
 #include <ctime>
-#include <regex>
+#include <optional>
 
 #include "perennial/core/error.h"
+#include "perennial/core/utc_time.h"
 
 namespace perennial::park {
 namespace {
@@ -61,37 +62,15 @@ std::int64_t Conditions::day() const {
 }
 
 double parseDateTime(const std::string& text) {
-  static const std::regex kFormat(R"((\d{4})-(\d{2})-(\d{2})T(\d{2}):(\d{2})(?::(\d{2})(\.\d+)?)?Z?)");
-  const std::string expected = "parameter date_time is '" + text +
-                               "', but must be a UTC time from 1970 on such as 2026-06-21T11:00:00Z";
-  std::smatch match;
-  if (!std::regex_match(text, match, kFormat)) {
-    throw ParameterError(expected);
+  const std::optional<double> seconds = parseUtc(text);
+  if (!seconds || *seconds < 0.0) {
+    throw ParameterError("parameter date_time is '" + text +
+                         "', but must be a time from 1970 on such as 2026-06-21T11:00:00Z");
   }
-  const auto number = [&](std::size_t i) { return match[i].matched ? std::stoi(match[i].str()) : 0; };
-  std::tm parts{};
-  parts.tm_year = number(1) - 1900;
-  parts.tm_mon = number(2) - 1;
-  parts.tm_mday = number(3);
-  parts.tm_hour = number(4);
-  parts.tm_min = number(5);
-  parts.tm_sec = number(6);
-  const double fraction = match[7].matched ? std::stod("0" + match[7].str()) : 0.0;
-  const double seconds = static_cast<double>(timegm(&parts)) + fraction;
-  // timegm() normalises the 30th of February to the 2nd of March: a date that changed did not exist.
-  const std::string again = seconds < 0.0 ? "" : formatDateTime(seconds);
-  if (again.compare(0, 16, text, 0, 16) != 0 || number(6) > 59) {
-    throw ParameterError(expected);
-  }
-  return seconds;
+  return *seconds;
 }
 
-std::string formatDateTime(double date_time_s) {
-  const std::tm parts = brokenDown(date_time_s);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
+std::string formatDateTime(double date_time_s) { return formatUtc(std::floor(date_time_s)); }
 
 double dayOfYear(double date_time_s) {
   const double fraction = date_time_s / kSecondsPerDay - std::floor(date_time_s / kSecondsPerDay);

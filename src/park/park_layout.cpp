@@ -82,10 +82,19 @@ class Planner {
   }
 
   void putSpots() {
-    for (int i = 0; i < 14; ++i) {
+    constexpr int kSpots = 14;
+    for (int i = 0; i < kSpots; ++i) {
       const double side = random_.uniform() < 0.65 ? -1.0 : 1.0;
-      layout_.spots.push_back(beside(path_, (i + random_.uniform(0.1, 0.9)) / 14.0,
-                                     side * random_.uniform(2.2, 6.5), random_.uniform(-3.1, 3.1)));
+      const Pose spot = beside(path_, (i + random_.uniform(0.1, 0.9)) / kSpots,
+                               side * random_.uniform(2.2, 6.5), random_.uniform(-3.1, 3.1));
+      // Inside the bend of the loop, a place beside one part of the path may lie on another.
+      const bool on_furniture =
+          std::any_of(layout_.furniture.begin(), layout_.furniture.end(), [&](const Object& object) {
+            return distanceTo(object.pose, spot.x, spot.y) < (object.kind == ObjectKind::kHouse ? 4.0 : 1.5);
+          });
+      if (std::abs(path_.nearest(spot.x, spot.y).lateral_m) > 2.0 && !on_furniture) {
+        layout_.spots.push_back(spot);
+      }
     }
   }
 

@@ -20,7 +20,7 @@ struct Kind {
   double fall_m_s, drift, diameter_m, opacity;
 };
 
-constexpr Kind kRain = {1500, 7.0, 0.35, 0.003, 0.16};
+constexpr Kind kRain = {2500, 7.0, 0.35, 0.004, 0.5};
 constexpr Kind kSnow = {3000, 1.1, 0.5, 0.008, 0.8};
 
 double wrapped(double value, double length) { return value - length * std::floor(value / length); }

@@ -100,7 +100,7 @@ void leaf(cv::Mat& grey, cv::Mat& opacity, const cv::Point2d& stalk, double angl
 void branch(cv::Mat& grey, cv::Mat& opacity, Random& random, const cv::Point2d& from, double angle,
             double length, int depth) {
   const cv::Point2d to = from + cv::Point2d(std::cos(angle), std::sin(angle)) * length;
-  const int width = 1 + 2 * depth;
+  const int width = 1 + depth;
   cv::line(grey, fixed(from), fixed(to), cv::Scalar(110 + 20 * (3 - depth)), width, cv::LINE_AA, 4);
   cv::line(opacity, fixed(from), fixed(to), cv::Scalar(255), width, cv::LINE_AA, 4);
   for (int i = 0; depth > 0 && i < 4; ++i) {

@@ -42,35 +42,38 @@ class Renderer::Implementation {
   Implementation(const LoopPath& path, const CameraGeometry& geometry)
       : path_(path), geometry_(geometry), gl_(geometry.width, geometry.height) {
     gl_.makeCurrent();
-    viewer_.setThreadingModel(osgViewer::Viewer::SingleThreaded);
-    viewer_.setUpViewerAsEmbeddedInWindow(0, 0, geometry.width, geometry.height);
-    viewer_.setKeyEventSetsDone(0);
-    viewer_.setReleaseContextAtEndOfFrameHint(false);
-    viewer_.setLightingMode(osg::View::NO_LIGHT);
-    osg::Camera* camera = viewer_.getCamera();
+    // Before the viewer makes its bins: with the near things drawn first, most of the far ones need no
+    // shading.
+    osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
+    viewer_ = new osgViewer::Viewer;
+    viewer_->setThreadingModel(osgViewer::Viewer::SingleThreaded);
+    viewer_->setUpViewerAsEmbeddedInWindow(0, 0, geometry.width, geometry.height);
+    viewer_->setKeyEventSetsDone(0);
+    viewer_->setReleaseContextAtEndOfFrameHint(false);
+    viewer_->setLightingMode(osg::View::NO_LIGHT);
+    osg::Camera* camera = viewer_->getCamera();
     camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
     camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING);
     camera->setProjectionMatrix(projectionOf(geometry));
     camera->setViewport(0, 0, geometry.width, geometry.height);
-    osgUtil::RenderBin::setDefaultRenderBinSortMode(osgUtil::RenderBin::SORT_FRONT_TO_BACK);
   }
 
   ~Implementation() {
     gl_.makeCurrent();
-    viewer_.setSceneData(nullptr);
+    viewer_->setSceneData(nullptr);
     scene_.reset();
-    viewer_.getCamera()->getGraphicsContext()->close();
+    viewer_->getCamera()->getGraphicsContext()->close();
   }
 
   const cv::Mat& render(const Conditions& conditions, const CameraPose& pose, double exposure) {
     gl_.makeCurrent();
     if (!scene_ || !scene_->suits(conditions)) {
       scene_ = std::make_unique<ParkScene>(path_, conditions, kShadowMapPx);
-      viewer_.setSceneData(scene_->root());
+      viewer_->setSceneData(scene_->root());
     }
     scene_->prepare(conditions, pose, geometry_, exposure);
-    viewer_.getCamera()->setViewMatrix(viewOf(pose));
-    viewer_.frame(0.0);
+    viewer_->getCamera()->setViewMatrix(viewOf(pose));
+    viewer_->frame(0.0);
     raw_.create(geometry_.height, geometry_.width, CV_8UC4);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glReadPixels(0, 0, geometry_.width, geometry_.height, GL_BGRA, GL_UNSIGNED_BYTE, raw_.data);
@@ -82,7 +85,7 @@ class Renderer::Implementation {
   const LoopPath& path_;
   CameraGeometry geometry_;
   HeadlessGl gl_;
-  osgViewer::Viewer viewer_;
+  osg::ref_ptr<osgViewer::Viewer> viewer_;
   std::unique_ptr<ParkScene> scene_;
   cv::Mat raw_, image_;
 };

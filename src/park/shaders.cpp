@@ -112,8 +112,8 @@ in vec3 position, normal;
 out vec4 colour;
 void main() {
   vec2 p = position.xy;
-  vec4 fine = texture(ground, p * 0.42);
-  vec4 other = texture(ground, vec2(0.83 * p.x - 0.56 * p.y, 0.56 * p.x + 0.83 * p.y) * 0.19 + 0.37);
+  vec4 fine = texture(ground, p * 0.42, -1.0);
+  vec4 other = texture(ground, vec2(0.83 * p.x - 0.56 * p.y, 0.56 * p.x + 0.83 * p.y) * 0.19 + 0.37, -1.0);
   float broad = texture(ground, p * 0.021).a;
   float middle = texture(ground, p * 0.11 + 0.2).a;
   float away = texture(path_distance, (p - path_origin) / path_side).r * 5.0;
@@ -128,7 +128,7 @@ void main() {
 
   if (litter > 0.0) {
     vec2 q = p + litter_shift;
-    float leaf = texture(ground, q * 0.37).b;
+    float leaf = texture(ground, q * 0.37, -1.0).b;
     float heap = texture(ground, q * 0.045).a;
     float cover = step(0.2, leaf) * step(1.0 - litter * (1.0 - 0.45 * gravel), heap * 0.7 + 0.3 * fine.a);
     vec3 brown = mix(vec3(0.09, 0.05, 0.02), vec3(0.42, 0.23, 0.05), leaf * leaf);

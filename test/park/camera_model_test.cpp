@@ -44,7 +44,8 @@ TEST(CameraModel, raisesTheGainOnlyWhenTheTimeIsUsedUp) {
 
 TEST(CameraModel, saturates) {
   CameraModel camera({}, 1);
-  EXPECT_EQ(mean(camera.develop(cv::Mat(480, 752, CV_8UC4, cv::Scalar::all(255)), 0.0, 1, false)), 255.0);
+  EXPECT_NEAR(mean(camera.develop(cv::Mat(480, 752, CV_8UC4, cv::Scalar::all(255)), 0.0, 1, false)), 255.0,
+              1e-9);
 }
 
 TEST(CameraModel, noiseIsSeededAndGrowsWithTheGain) {

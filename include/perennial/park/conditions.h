@@ -27,9 +27,8 @@ struct Conditions {
   std::int64_t day() const;
 };
 
-/// Seconds since 1970 of "2026-06-21T11:00:00Z"; the seconds may be omitted or have decimals, the Z may be
-/// omitted (times are always UTC). Throws ParameterError for anything else, also for a day that does not
-/// exist.
+/// Seconds since 1970 of an ISO 8601 time such as "2026-06-21T11:00:00Z" (see parseUtc()). Throws
+/// ParameterError for anything else, and for times before 1970.
 double parseDateTime(const std::string& text);
 
 /// The inverse, rounded down to the second.
