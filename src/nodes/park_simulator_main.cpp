@@ -1,6 +1,8 @@
 #include <ros/ros.h>
 
 #include <csignal>
+#include <exception>
+#include <iostream>
 
 #include "perennial/ros/park_simulator.h"
 
@@ -20,7 +22,8 @@ int main(int argc, char** argv) {
     });
     return 0;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    // Not through ROS, whose log is silent by now: nobody would learn which parameter is wrong.
+    std::cerr << "park_simulator: " << error.what() << std::endl;
     return 1;
   }
 }

@@ -142,7 +142,7 @@ class Gardener {
         std::clamp(0.25 + 0.75 * (depth - 0.45) / 0.55, 0.2, 1.0) * (0.8 + 0.25 * direction.z());
     const double size = size_m * place.uniform(0.75, 1.3) * (leafy ? 1.0 : 1.15);
     const Colour colour = leafy ? leafColour(fate) : scaled({0.085, 0.07, 0.055}, fate.uniform(0.8, 1.6));
-    if (leafy || fate.uniform() < 0.75) {
+    if (leafy || fate.uniform() < 0.7) {
       addSprite(position, unit(direction + randomDirection(place) * 0.9), unit(direction + Vec3(0, 0, 0.5)),
                 size, leafy ? Tile::kLeaves : Tile::kTwigs, scaled(colour, light), place.uniform(0.0, kTurn));
     }

@@ -100,10 +100,10 @@ void leaf(cv::Mat& grey, cv::Mat& opacity, const cv::Point2d& stalk, double angl
 void branch(cv::Mat& grey, cv::Mat& opacity, Random& random, const cv::Point2d& from, double angle,
             double length, int depth) {
   const cv::Point2d to = from + cv::Point2d(std::cos(angle), std::sin(angle)) * length;
-  const int width = 1 + depth;
+  const int width = depth > 1 ? depth : 1;
   cv::line(grey, fixed(from), fixed(to), cv::Scalar(110 + 20 * (3 - depth)), width, cv::LINE_AA, 4);
   cv::line(opacity, fixed(from), fixed(to), cv::Scalar(255), width, cv::LINE_AA, 4);
-  for (int i = 0; depth > 0 && i < 4; ++i) {
+  for (int i = 0; depth > 0 && i < 3; ++i) {
     const double share = random.uniform(0.3, 1.0);
     branch(grey, opacity, random, from + (to - from) * share, angle + random.uniform(-0.9, 0.9),
            length * random.uniform(0.4, 0.7), depth - 1);
