@@ -1,3 +1,6 @@
+#include <exception>
+#include <iostream>
+
 #include <ros/ros.h>
 
 #include "perennial/ros/bag_player.h"
@@ -8,7 +11,7 @@ int main(int argc, char** argv) {
     const ros::NodeHandle nh;
     return perennial::BagPlayer(nh, ros::NodeHandle("~")).run() ? 0 : 1;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    std::cerr << "bag_player: " << error.what() << std::endl;
     return 1;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include <ros/callback_queue.h>
@@ -30,7 +31,8 @@ int runNode(int argc, char** argv, const std::string& name) {
     ros::shutdown();
     return 0;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    // Not by rosconsole, which may be silent before the node has come up.
+    std::cerr << name << " cannot run: " << error.what() << std::endl;
     ros::shutdown();
     return 1;
   }
