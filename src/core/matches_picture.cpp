@@ -20,6 +20,7 @@ const cv::Scalar kUnmatched(190, 170, 90);
 constexpr int kGap = 8;          // px between the images
 constexpr int kHeader = 30;      // px for the line of text on top
 constexpr int kHistogram = 150;  // px for the histogram below
+constexpr double kLineOpacity = 0.35;  // hundreds of lines must not hide the images
 constexpr int kShownHalf = 20;   // bins shown on each side of 0, at least
 
 void write(cv::Mat& canvas, const std::string& text, cv::Point where, double size = 0.5,
@@ -53,7 +54,7 @@ void drawFeatures(cv::Mat& canvas, const FeatureSet& features, cv::Point offset)
 }
 
 void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view, const RegistrationResult& result,
-               FeatureState state, cv::Point map_offset, cv::Point view_offset) {
+               FeatureState state, cv::Point map_offset, cv::Point view_offset, bool lines) {
   const cv::Scalar& colour = state == FeatureState::kMatchedCorrectly ? kCorrect : kIncorrect;
   for (std::size_t i = 0; i < result.states.size(); ++i) {
     if (result.states[i] != state || result.partners[i] < 0) {
@@ -61,9 +62,12 @@ void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view, c
     }
     const cv::Point from = at(map.keypoints[i], map_offset);
     const cv::Point to = at(view.keypoints[static_cast<std::size_t>(result.partners[i])], view_offset);
-    cv::line(canvas, from, to, colour, 1, cv::LINE_AA);
-    cv::circle(canvas, from, 3, colour, cv::FILLED, cv::LINE_AA);
-    cv::circle(canvas, to, 3, colour, cv::FILLED, cv::LINE_AA);
+    if (lines) {
+      cv::line(canvas, from, to, colour, 1, cv::LINE_AA);
+    } else {
+      cv::circle(canvas, from, 3, colour, cv::FILLED, cv::LINE_AA);
+      cv::circle(canvas, to, 3, colour, cv::FILLED, cv::LINE_AA);
+    }
   }
 }
 
@@ -120,11 +124,17 @@ cv::Mat drawMatches(const cv::Mat& map_image, const cv::Mat& view_image, const F
   right.copyTo(canvas(cv::Rect(view_offset, right.size())));
   drawFeatures(canvas, map, map_offset);
   drawFeatures(canvas, view, view_offset);
-  drawPairs(canvas, map, view, result, FeatureState::kMatchedIncorrectly, map_offset, view_offset);
-  drawPairs(canvas, map, view, result, FeatureState::kMatchedCorrectly, map_offset, view_offset);
+  cv::Mat with_lines = canvas.clone();
+  for (const bool lines : {true, false}) {
+    for (const FeatureState state : {FeatureState::kMatchedCorrectly, FeatureState::kMatchedIncorrectly}) {
+      drawPairs(lines ? with_lines : canvas, map, view, result, state, map_offset, view_offset, lines);
+    }
+    if (lines) {
+      cv::addWeighted(with_lines, kLineOpacity, canvas, 1.0 - kLineOpacity, 0.0, canvas);
+    }
+  }
   write(canvas, "map", {8, 20});
-  write(canvas, "view", {view_offset.x + 8, 20});
-  writeCentred(canvas, headline(result), {canvas.cols / 2, 20}, 0.5);
+  write(canvas, "view     " + headline(result), {view_offset.x + 8, 20});
   drawHistogram(canvas.rowRange(kHeader + images_height, canvas.rows), result);
   return canvas;
 }

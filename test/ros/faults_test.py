@@ -1,0 +1,318 @@
+#!/usr/bin/env python3
+"""Teach and repeat with the real nodes and a fake robot: cancelling, sensor loss, bad goals, bad input."""
+import math
+import os
+import shutil
+import sys
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from perennial_nav.msg import (
+    NavigationState,
+    Registration,
+    RepeatAction,
+    RepeatGoal,
+    TeachAction,
+    TeachGoal,
+)
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from fake_robot import FakeRobot, wait_until  # noqa: E402
+
+LENGTH_M = 8.0
+BOTH = ["teach_recorder", "repeat_navigator"]
+FOLDER = ""  # of the maps; from the command line
+
+
+class Stack:
+    """The nodes' side of the tests, shared: starting nodes takes longer than the tests."""
+
+    def __init__(self):
+        self.robot = FakeRobot()
+        self.registrations, self.states = [], []
+        rospy.Subscriber("registration", Registration, self.registrations.append, queue_size=1000)
+        rospy.Subscriber("navigation_state", NavigationState, self.states.append, queue_size=1000)
+        self.teach = actionlib.SimpleActionClient("teach", TeachAction)
+        self.repeat = actionlib.SimpleActionClient("repeat", RepeatAction)
+        self.robot.connect(nodes=2)
+        wait_until(lambda: self.teach.wait_for_server(rospy.Duration(0.01)) or self.tick(), "teach")
+        wait_until(lambda: self.repeat.wait_for_server(rospy.Duration(0.01)) or self.tick(), "repeat")
+
+    def tick(self):
+        self.robot.tick(0.1)
+        return False
+
+    @staticmethod
+    def done(client):
+        return client.simple_state == actionlib.SimpleGoalState.DONE
+
+    def start(self, client, goal):
+        client.send_goal(goal)
+        wait_until(
+            lambda: self.done(client) or client.get_state() == GoalStatus.ACTIVE, "the goal to be taken up"
+        )
+
+    def result(self, client):
+        wait_until(lambda: self.done(client), "the result")
+        return client.get_result()
+
+    def teach_path(self, name, overwrite=False):
+        robot = self.robot
+        robot.restart()
+        self.start(self.teach, TeachGoal(map_name=name, overwrite=overwrite))
+        if self.done(self.teach):
+            return self.result(self.teach)
+        robot.speed = 0.5
+        robot.x -= robot.speed * 0.1  # the first image is taken at 0
+        while robot.x < LENGTH_M - 1e-6:
+            robot.step(BOTH)
+        self.teach.cancel_goal()
+        return self.result(self.teach)
+
+    def begin_repeat(self, name, **goal):
+        self.robot.restart(goal.get("start_distance_m", 0.0))
+        del self.registrations[:]
+        self.start(self.repeat, RepeatGoal(map_name=name, **goal))
+
+    def drive(self, until):
+        for _ in range(1000):
+            if self.done(self.repeat) or until():
+                return
+            self.robot.step(BOTH)
+        raise AssertionError("the robot drove on and on")
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.stack = Stack()
+        cls.robot = cls.stack.robot
+        result = cls.stack.teach_path("path")
+        assert result.success, result.message
+
+    def tearDown(self):
+        self.stack.repeat.cancel_all_goals()
+        self.stack.teach.cancel_all_goals()
+        wait_until(lambda: self.stack.done(self.stack.repeat), "the end of the goal")
+
+    def repeated(self, name="path", **goal):
+        self.stack.begin_repeat(name, **goal)
+        self.stack.drive(lambda: False)
+        return self.stack.result(self.stack.repeat)
+
+    def interrupted(self):
+        """A repeat of the path, in its middle."""
+        self.stack.begin_repeat("path")
+        self.stack.drive(lambda: self.robot.x > LENGTH_M / 2)
+        self.assertFalse(self.stack.done(self.stack.repeat))
+        self.assertGreater(self.robot.command().linear.x, 0.1)
+
+    def assert_stopped(self):
+        wait_until(self.robot.stands, "the robot to stop")
+
+    def newest_state(self):
+        return self.stack.states[-1]
+
+    # --- the way it should be ---
+
+    def test_teaching_counts_local_maps(self):
+        result = self.stack.teach_path("counted")
+        self.assertTrue(result.success, result.message)
+        self.assertEqual(result.local_maps, 41)
+        self.assertAlmostEqual(result.distance_m, LENGTH_M, places=3)
+        self.assertTrue(os.path.exists(result.file))
+
+    def test_repeats_the_path(self):
+        result = self.repeated()
+        self.assertTrue(result.success, result.reason)
+        self.assertAlmostEqual(result.distance_m, LENGTH_M, delta=0.01)
+        self.assert_stopped()
+        self.assertTrue(all(message.has_displacement for message in self.stack.registrations))
+        self.assertEqual(self.newest_state().state, NavigationState.FINISHED)
+
+    def test_turns_back_to_the_path(self):
+        self.stack.begin_repeat("path")
+        self.robot.left_px = 20  # turned left, the robot must turn right
+        self.stack.drive(lambda: self.robot.x > 2.0)
+        self.assertLess(self.robot.command().angular.z, -0.01)
+        self.assertAlmostEqual(self.stack.registrations[-1].displacement_px, -20.0, delta=1.5)
+
+    def test_starts_in_the_middle(self):
+        result = self.repeated(start_distance_m=5.0)
+        self.assertTrue(result.success, result.reason)
+        self.assertEqual(self.stack.registrations[0].local_map, 25)
+        self.assertAlmostEqual(result.distance_m, LENGTH_M - 5.0, delta=0.06)
+
+    def test_traversals_carry_the_overshoot_over(self):
+        self.stack.begin_repeat("path", traversals=2)
+        self.robot.speed = 0.53  # does not fit the length
+        self.robot.loop_m = LENGTH_M  # a closed path: its end is its start
+        self.stack.drive(lambda: False)
+        result = self.stack.result(self.stack.repeat)
+        self.assertTrue(result.success, result.reason)
+        self.assertEqual(result.traversals, 2)
+        self.assertAlmostEqual(result.distance_m, 2 * LENGTH_M, delta=0.12)
+        second = [m for m in self.stack.registrations if m.traversal == self.stack.registrations[-1].traversal]
+        self.assertGreater(second[0].distance_m, 0.0)
+        self.assertLess(second[0].distance_m, 0.2)
+
+    # --- cancelling and losing sensors ---
+
+    def test_cancelling_stops_the_robot_and_teaches_nothing(self):
+        self.interrupted()
+        self.stack.repeat.cancel_goal()
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn("cancelled", result.reason)
+        self.assert_stopped()
+
+    def test_stops_without_images_and_goes_on_with_them(self):
+        self.interrupted()
+        self.robot.sends_images = False
+        for _ in range(10):
+            self.robot.step()
+        self.assert_stopped()
+        wait_until(lambda: self.newest_state().state == NavigationState.STOPPED, "the state 'stopped'")
+        self.assertIn("image", self.newest_state().reason)
+        self.robot.sends_images = True
+        self.robot.step(BOTH)
+        wait_until(lambda: self.newest_state().state == NavigationState.REPEATING, "the state 'repeating'")
+        self.assertGreater(self.robot.command().linear.x, 0.1)
+
+    def test_gives_up_without_images(self):
+        self.interrupted()
+        self.robot.sends_images = False
+        for _ in range(150):
+            self.robot.step()
+            if self.stack.done(self.stack.repeat):
+                break
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn("no image", result.reason)
+
+    def test_stops_without_odometry(self):
+        self.interrupted()
+        self.robot.sends_odometry = False
+        for _ in range(10):
+            self.robot.step()
+        self.assert_stopped()
+        wait_until(lambda: "odometry" in self.newest_state().reason, "the reason")
+
+    def test_odometry_that_does_not_move(self):
+        self.interrupted()
+        self.robot.speed = 0.0
+        self.stack.drive(lambda: False)
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn("odometry has not moved", result.reason)
+        self.assert_stopped()
+
+    def assert_fails_at_once(self, reason):
+        self.robot.step()
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn(reason, result.reason)
+        self.assert_stopped()
+        self.assertEqual(self.newest_state().state, NavigationState.FAILED)
+
+    def test_odometry_of_nan(self):
+        self.interrupted()
+        self.robot.odometry_changes = {"x": math.nan}
+        self.assert_fails_at_once("not finite")
+
+    def test_odometry_that_jumps(self):
+        self.interrupted()
+        self.robot.odometry_changes = {"x": 1000.0}
+        self.assert_fails_at_once("jumps")
+
+    def test_image_of_another_size(self):
+        self.interrupted()
+        self.robot.image_changes = {"width": 160, "height": 100, "step": 160, "data": bytes(160 * 100)}
+        self.assert_fails_at_once("160x100")
+
+    def test_image_of_another_encoding(self):
+        self.interrupted()
+        self.robot.image_changes = {"encoding": "bgr8", "step": 960, "data": bytes(960 * 200)}
+        self.assert_fails_at_once("bgr8")
+
+    def test_image_that_is_broken(self):
+        self.interrupted()
+        self.robot.image_changes = {"data": bytes(17)}
+        self.assert_fails_at_once("cannot be read")
+
+    # --- goals that cannot be served ---
+
+    def test_unknown_map(self):
+        self.stack.begin_repeat("nowhere")
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn("no map 'nowhere'", result.reason)
+        self.assertIn("path", result.reason, "the maps there are must be named")
+
+    def test_map_names_cannot_leave_the_folder(self):
+        for name in ("../evil", "/etc/passwd", "", ".hidden"):
+            self.assertFalse(self.stack.teach_path(name).success)
+            self.stack.begin_repeat(name)
+            self.assertFalse(self.stack.result(self.stack.repeat).success)
+
+    def test_start_beyond_the_path(self):
+        self.stack.begin_repeat("path", start_distance_m=LENGTH_M + 1.0)
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn("does not lie on the path", result.reason)
+
+    def test_existing_maps_are_not_overwritten(self):
+        file = os.path.join(FOLDER, "path.perennial")
+        with open(file, "rb") as stored:
+            before = stored.read()
+        result = self.stack.teach_path("path")
+        self.assertFalse(result.success)
+        self.assertIn("overwrite", result.message)
+        with open(file, "rb") as stored:
+            self.assertEqual(stored.read(), before)
+
+    def test_overwriting_on_purpose(self):
+        self.assertTrue(self.stack.teach_path("twice").success)
+        self.assertTrue(self.stack.teach_path("twice", overwrite=True).success)
+
+    def test_teaching_without_moving_stores_nothing(self):
+        self.robot.restart()
+        self.stack.start(self.stack.teach, TeachGoal(map_name="standing"))
+        self.robot.speed = 0.0
+        for _ in range(10):
+            self.robot.step(BOTH)
+        self.stack.teach.cancel_goal()
+        result = self.stack.result(self.stack.teach)
+        self.assertFalse(result.success)
+        self.assertIn("did not move", result.message)
+        self.assertFalse(os.path.exists(os.path.join(FOLDER, "standing.perennial")))
+
+    def test_images_of_another_size_while_teaching_are_left_out(self):
+        self.robot.restart()
+        self.stack.start(self.stack.teach, TeachGoal(map_name="resized"))
+        self.robot.speed = 0.5
+        self.robot.teleop.publish(self.robot.command())
+        for _ in range(10):
+            self.robot.step(BOTH)
+        self.robot.image_changes = {"width": 160, "height": 100, "step": 160, "data": bytes(160 * 100)}
+        for _ in range(5):
+            self.robot.step(BOTH)
+        self.robot.image_changes = {}
+        for _ in range(10):
+            self.robot.step(BOTH)
+        self.stack.teach.cancel_goal()
+        result = self.stack.result(self.stack.teach)
+        self.assertTrue(result.local_maps > 0 or not result.success, result.message)
+
+
+if __name__ == "__main__":
+    FOLDER = rospy.myargv()[1]
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    rospy.init_node("faults_test")
+    try:
+        rostest.rosrun("perennial_nav", "faults", Faults, sys.argv)
+    finally:
+        shutil.rmtree(FOLDER, ignore_errors=True)
