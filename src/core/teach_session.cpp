@@ -16,6 +16,11 @@ std::string imageKind(int width, int height, const std::string& encoding) {
   return std::to_string(width) + "x" + std::to_string(height) + " " + encoding;
 }
 
+bool travels(const PathProfile& profile) {
+  return std::any_of(profile.entries().begin(), profile.entries().end(),
+                     [](const ProfileEntry& entry) { return entry.velocity.forward != 0.0; });
+}
+
 }  // namespace
 
 TeachSettings TeachSettings::load(ParameterReader& reader) {
@@ -42,7 +47,6 @@ double TeachSession::distance(double travelled_m) const {
 }
 
 void TeachSession::addCommand(double travelled_m, const Velocity& velocity) {
-  has_commands_ = true;
   commanded_.add(distance(travelled_m), velocity);
 }
 
@@ -100,7 +104,7 @@ void TeachSession::requireSameImage(const cv::Mat& image, const std::string& enc
 
 const PathProfile& TeachSession::chosenProfile() const {
   const bool commands = settings_.velocity_source == "commands" ||
-                        (settings_.velocity_source == "auto" && has_commands_);
+                        (settings_.velocity_source == "auto" && travels(commanded_));
   return commands ? commanded_ : measured_;
 }
 
@@ -115,8 +119,7 @@ TeachSummary TeachSession::finish(double travelled_m) {
                    "check the odometry topic");
   }
   const PathProfile& profile = chosenProfile();
-  if (std::none_of(profile.entries().begin(), profile.entries().end(),
-                   [](const ProfileEntry& entry) { return entry.velocity.forward != 0.0; })) {
+  if (!travels(profile)) {
     throw MapError("map '" + metadata_.name + "' has no velocities: neither commands nor odometry told how fast to "
                    "drive; check the command topic and the parameter velocity_source");
   }

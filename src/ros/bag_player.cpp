@@ -21,6 +21,7 @@ using RepeatClient = actionlib::SimpleActionClient<perennial_nav::RepeatAction>;
 
 /// So many images may be on their way: enough to keep the nodes busy, and for odometry that comes after its image.
 constexpr std::size_t kUnanswered = 4;
+const ros::WallDuration kClockInterval(0.1);
 
 }  // namespace
 
@@ -58,11 +59,12 @@ BagPlayer::BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh)
 
 void BagPlayer::requireTopics() const {
   std::set<std::string> topics;
-  std::string known;
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag_).getConnections()) {
-    if (topics.insert(connection->topic).second) {
-      known += (known.empty() ? "" : ", ") + connection->topic;
-    }
+    topics.insert(connection->topic);
+  }
+  std::string known;
+  for (const std::string& topic : topics) {
+    known += (known.empty() ? "" : ", ") + topic;
   }
   for (const std::string& topic : {settings_.image_topic, settings_.odom_topic}) {
     if (topics.count(topic) == 0) {
@@ -98,6 +100,7 @@ bool BagPlayer::teach() {
   goal.map_name = settings_.map_name;
   goal.overwrite = static_cast<std::uint8_t>(settings_.overwrite);
   client.sendGoal(goal);
+  awaitStart([&] { return client.getState() != actionlib::SimpleClientGoalState::PENDING; });
   play([&] { return client.getState().isDone(); });
   client.cancelGoal();  // finishes the map
   if (!waitUntil([&] { return client.getState().isDone(); }, settings_.patience_s)) {
@@ -118,6 +121,7 @@ bool BagPlayer::repeat() {
   goal.traversals = 1;
   goal.start_distance_m = settings_.start_distance_m;
   client.sendGoal(goal);
+  awaitStart([&] { return client.getState() != actionlib::SimpleClientGoalState::PENDING; });
   play([&] { return client.getState().isDone(); });
   if (!client.getState().isDone()) {
     ROS_WARN("the bag ends before the path does");
@@ -129,6 +133,12 @@ bool BagPlayer::repeat() {
   const auto result = client.getResult();
   ROS_INFO("%zu images played: %s", images_, result->reason.c_str());
   return result->success != 0;
+}
+
+void BagPlayer::awaitStart(const std::function<bool()>& started) {
+  if (!waitUntil(started, settings_.patience_s)) {
+    throw Error(node_ + " does not take up the goal");
+  }
 }
 
 void BagPlayer::play(const std::function<bool()>& stop) {
@@ -176,10 +186,17 @@ void BagPlayer::publishClock(const ros::Time& time) {
 }
 
 bool BagPlayer::waitUntil(const std::function<bool()>& done, double seconds) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(seconds);
+  const ros::WallTime begin = ros::WallTime::now();
+  const ros::WallTime deadline = begin + ros::WallDuration(seconds);
+  ros::WallTime next_clock = begin + kClockInterval;
   while (ros::ok() && !done()) {
-    if (ros::WallTime::now() > deadline) {
+    const ros::WallTime now = ros::WallTime::now();
+    if (now > deadline) {
       return false;
+    }
+    if (now > next_clock) {
+      publishClock(clock_);  // for nodes that have just come up
+      next_clock = now + kClockInterval;
     }
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 #include <cv_bridge/cv_bridge.h>
@@ -28,6 +30,14 @@ constexpr double kProgress_m = 0.02;
 constexpr std::size_t kMessagesKept = 64;
 /// Images kept while their odometry is on its way.
 constexpr std::size_t kImagesKept = 30;
+/// Real time to wait for simulated time to begin.
+const ros::WallDuration kClockPatience(5.0);
+
+std::string seconds(double value) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << value << " s";
+  return text.str();
+}
 
 const std::vector<std::string> kGroups{"extraction", "registration", "steering", "along_path", "odometer"};
 
@@ -101,6 +111,9 @@ void RepeatNavigator::onGoal() {
 void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
   run_ = std::make_unique<Run>();
   run_->goal = goal;
+  if (!ros::Time::waitForValid(kClockPatience)) {
+    throw Error("there is no time: /use_sim_time is set, but nobody publishes /clock");
+  }
   run_->goal.traversals = std::max<std::uint32_t>(1, goal.traversals);
   run_->newest_stamp = run_->progress_stamp = ros::Time::now();
   odometer_.reset();
@@ -219,8 +232,7 @@ void RepeatNavigator::onTimer() {
     const bool has_odometry = newest && newest->stamp_s >= images_.front()->header.stamp.toSec();
     missing = has_odometry ? "local map" : "odometry";
   }
-  const std::string reason = "no " + missing + " for " + std::to_string(static_cast<int>(silent_s * 10.0) / 10) +
-                             "." + std::to_string(static_cast<int>(silent_s * 10.0) % 10) + " s";
+  const std::string reason = "no " + missing + " for " + seconds(silent_s);
   if (silent_s > settings_.give_up_s) {
     fail(reason + "; check its topic");
   } else {
@@ -315,8 +327,8 @@ void RepeatNavigator::watchProgress(const NavigationStep& step, const ros::Time&
   }
   const double stalled_s = (stamp - run_->progress_stamp).toSec();
   if (settings_.stall_timeout_s > 0.0 && stalled_s > settings_.stall_timeout_s) {
-    fail("the robot is driven, but its odometry has not moved for " + std::to_string(stalled_s) +
-         " s: is it blocked, or the odometry topic wrong?");
+    fail("the robot is driven, but its odometry has not moved for " + seconds(stalled_s) +
+         ": is it blocked, or the odometry topic wrong?");
   }
 }
 

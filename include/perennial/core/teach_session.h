@@ -16,7 +16,7 @@ namespace perennial {
 
 struct TeachSettings {
   double map_interval_m = 0.2;       ///< a local map is made every so far
-  /// Where the velocity profile comes from: "commands", "odometry", or "auto": the commands if there were any.
+  /// Where the velocity profile comes from: "commands", "odometry", or "auto": the commands if any of them drove.
   std::string velocity_source = "auto";
   double velocity_step = 0.02;       ///< odometry's velocities are recorded in steps of this, m/s and rad/s
 
@@ -82,7 +82,6 @@ class TeachSession {
   std::size_t all_features_ = 0;
   PathProfile commanded_;
   PathProfile measured_;
-  bool has_commands_ = false;
 };
 
 }  // namespace perennial

@@ -48,6 +48,8 @@ class BagPlayer {
   void requireTopics() const;
   void advertise();
   void publishClock(const ros::Time& time);
+  /// A message played before the node works on the goal would be lost.
+  void awaitStart(const std::function<bool()>& started);
   /// `stop`: asked between messages whether playing on makes no sense.
   void play(const std::function<bool()>& stop);
   /// Serves callbacks until `done`; false after `patience_s`.
