@@ -1,0 +1,4 @@
+# Tests of the drivers: their codecs and rules (gtest), then the real nodes against simulated hardware (rostest).
+foreach(name cameleon_codec cameleon_robot cameleon_status_parser motion_gate track_odometry)
+  perennial_gtest(${name}_test core/drivers/${name}_test.cpp)
+endforeach()
