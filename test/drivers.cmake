@@ -2,3 +2,8 @@
 foreach(name cameleon_codec cameleon_robot cameleon_status_parser motion_gate track_odometry)
   perennial_gtest(${name}_test core/drivers/${name}_test.cpp)
 endforeach()
+
+find_package(rostest REQUIRED)
+foreach(name cameleon cameleon_stop)
+  add_rostest(ros/drivers/${name}.test DEPENDENCIES cameleon_driver_node cameleon_simulator_node)
+endforeach()
