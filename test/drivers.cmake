@@ -1,5 +1,6 @@
 # Tests of the drivers: their codecs and rules (gtest), then the real nodes against simulated hardware (rostest).
-foreach(name cameleon_codec cameleon_robot cameleon_status_parser motion_gate track_odometry)
+foreach(name cameleon_codec cameleon_robot cameleon_status_parser motion_gate software_exposure tara_hid_codec tara_y16
+        track_odometry)
   perennial_gtest(${name}_test core/drivers/${name}_test.cpp)
 endforeach()
 
