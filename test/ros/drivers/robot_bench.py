@@ -1,29 +1,11 @@
 """What the tests of the robot's driver share: the simulator's view of the robot, and waiting for conditions."""
 import math
-import threading
 
 import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from perennial_nav.srv import InjectFault
-
-WAIT_S = 20.0  # wall time after which a condition counts as never met
-
-
-class Waiter:
-    """Waits for conditions on data that callbacks bring."""
-
-    def __init__(self):
-        self.changed = threading.Condition()
-
-    def notify(self):
-        with self.changed:
-            self.changed.notify_all()
-
-    def wait_for(self, condition, what, timeout_s=WAIT_S):
-        with self.changed:
-            if not self.changed.wait_for(condition, timeout_s):
-                raise AssertionError("never happened: " + what)
+from waiting import WAIT_S, Waiter
 
 
 class RobotBench(Waiter):
