@@ -11,6 +11,7 @@ namespace {
 constexpr double kRobotWatchdog_s = 0.84;
 /// Below this a robot that is supposed to send 25 statuses a second is in trouble, 1/s.
 constexpr double kLowStatusRate = 15.0;
+constexpr double kLongestTick_s = 0.5;
 
 geometry_msgs::TransformStamped toTransform(const nav_msgs::Odometry& odometry) {
   geometry_msgs::TransformStamped transform;
@@ -118,6 +119,10 @@ void CameleonDriver::tick() {
   bool silent = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (now - last_tick_s_ > kLongestTick_s) {
+      last_status_s_ = now;  // it was this clock or this node that paused, not the robot
+    }
+    last_tick_s_ = now;
     gate_.setSystemAlive(alive);
     velocity = gate_.next(now);
     silent = connected_ && now - last_status_s_ > settings_.status_timeout_s;

@@ -1,27 +1,16 @@
-#include <ros/init.h>
-#include <ros/time.h>
-
 #include "perennial/ros/drivers/cameleon_driver.h"
-#include "perennial/ros/drivers/node_main.h"
 #include "perennial/ros/parameters.h"
+#include "ros/node_main.h"
 
 namespace {
 
-void run() {
-  ros::NodeHandle nh;
-  ros::NodeHandle private_nh("~");
-  perennial::endSpinningOnSignals();
-  perennial::ParameterReader reader(perennial::readParameters(private_nh), private_nh.getNamespace() + "/");
-  const auto settings = perennial::CameleonDriverSettings::load(reader);
-  reader.requireAllUsed();
-  ros::Time::waitForValid();  // of simulated time, when that is used
-  const perennial::CameleonDriver driver(nh, private_nh, settings);
-  ros::spin();
-}
+struct Node {
+  Node(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
+      : driver(nh, private_nh, perennial::loadNode<perennial::CameleonDriverSettings>(private_nh, {})) {}
+
+  perennial::CameleonDriver driver;
+};
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "cameleon_driver", ros::init_options::NoSigintHandler);
-  return perennial::runNode(run);
-}
+int main(int argc, char** argv) { return perennial::runNode<Node>(argc, argv, "cameleon_driver"); }

@@ -32,6 +32,8 @@ CameleonSimulatorSettings CameleonSimulatorSettings::load(ParameterReader& reade
   scale.flipper_per_radps = reader.real("flipper_per_radps", scale.flipper_per_radps, 1.0, 1e5);
   settings.battery_percent = reader.integer("battery_percent", settings.battery_percent, 0, 100);
   settings.external_body = reader.boolean("external_body", settings.external_body);
+  settings.publish_clock = reader.boolean("publish_clock", settings.publish_clock);
+  settings.clock_rate = reader.real("clock_rate", settings.clock_rate, 0.1, 20.0);
   return settings;
 }
 
@@ -49,6 +51,12 @@ CameleonSimulator::CameleonSimulator(ros::NodeHandle nh, ros::NodeHandle private
   }
   defineFaults();
   fault_service_ = private_nh.advertiseService("inject_fault", &CameleonSimulator::injectFault, this);
+  if (settings_.publish_clock) {
+    clock_ = std::make_unique<ClockPublisher>(nh, settings_.clock_rate, CameleonRobot::kLoopPeriod_s,
+                                              [this] { loop(); });
+  } else {
+    timer_ = std::make_unique<TickTimer>(nh, CameleonRobot::kLoopPeriod_s, [this] { loop(); });
+  }
   ROS_INFO("A simulated CAMELEON listens on port %d.", server_.port());
 }
 

@@ -69,6 +69,7 @@ class CameleonDriver {
   bool connected_ = false;
   std::optional<CameleonStatus> last_status_;
   double last_status_s_ = 0.0;
+  double last_tick_s_ = 0.0;
   std::uint64_t invalid_statuses_ = 0;
   std::uint64_t refused_commands_ = 0;
 

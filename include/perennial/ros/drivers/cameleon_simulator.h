@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
@@ -16,6 +17,8 @@
 #include "perennial/core/parameter_reader.h"
 #include "perennial/ros/drivers/cameleon_faults.h"
 #include "perennial/ros/drivers/cameleon_server.h"
+#include "perennial/ros/drivers/clock_publisher.h"
+#include "perennial/ros/drivers/tick_timer.h"
 #include "perennial_nav/InjectFault.h"
 
 namespace perennial {
@@ -26,6 +29,8 @@ struct CameleonSimulatorSettings {
   CameleonScale scale;
   int battery_percent = 80;
   bool external_body = false;  ///< another simulation moves the body: see CameleonSimulator
+  bool publish_clock = false;  ///< the simulator's time is everybody's (/clock)
+  double clock_rate = 1.0;     ///< simulated seconds per second, with publish_clock
 
   static CameleonSimulatorSettings load(ParameterReader& reader);
 };
@@ -42,14 +47,13 @@ class CameleonSimulator {
   CameleonSimulator(ros::NodeHandle nh, ros::NodeHandle private_nh,
                     const CameleonSimulatorSettings& settings);
 
-  /// One loop of the robot: to be called every CameleonRobot::kLoopPeriod_s.
-  void loop();
-
  private:
   /// Bytes or commands that are on their way.
   template <typename Cargo>
   using Delayed = std::deque<std::pair<double, Cargo>>;
 
+  /// One loop of the robot: called every CameleonRobot::kLoopPeriod_s.
+  void loop();
   bool injectFault(perennial_nav::InjectFault::Request& request,
                    perennial_nav::InjectFault::Response& response);
   void defineFaults();
@@ -81,6 +85,8 @@ class CameleonSimulator {
   ros::Publisher body_command_publisher_;
   ros::Subscriber body_subscriber_;
   ros::ServiceServer fault_service_;
+  std::unique_ptr<ClockPublisher> clock_;
+  std::unique_ptr<TickTimer> timer_;
 };
 
 }  // namespace perennial
