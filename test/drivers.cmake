@@ -1,0 +1,21 @@
+# Tests of the drivers: their codecs and rules (gtest), then the real nodes against simulated hardware (rostest).
+foreach(name cameleon_codec cameleon_robot cameleon_status_parser motion_gate software_exposure tara_hid_codec tara_y16
+        teleop track_odometry)
+  perennial_gtest(${name}_test core/drivers/${name}_test.cpp)
+endforeach()
+
+foreach(name cameleon cameleon_stop teleop)
+  add_rostest(ros/drivers/${name}.test DEPENDENCIES cameleon_driver_node cameleon_simulator_node teleop_node)
+endforeach()
+if(TARGET tara_camera_node)
+  add_rostest(ros/drivers/tara.test DEPENDENCIES tara_camera_node tara_simulator_node perennial_tara_preload)
+endif()
+execute_process(
+  COMMAND /usr/bin/python3 -c "import gi; gi.require_version('GstRtspServer', '1.0')"
+  RESULT_VARIABLE no_rtsp_server OUTPUT_QUIET ERROR_QUIET
+)
+if(no_rtsp_server)
+  message(STATUS "Test of cameleon_video_node left out: it needs gir1.2-gst-rtsp-server-1.0")
+elseif(TARGET cameleon_video_node)
+  add_rostest(ros/drivers/video.test DEPENDENCIES cameleon_video_node)
+endif()

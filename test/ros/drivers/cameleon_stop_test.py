@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""The robot stops when its driver ends, whichever way, and when the ROS master is gone."""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import unittest
+
+import roslib.packages
+import rospy
+import rostest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from robot_bench import RobotBench  # noqa: E402
+
+WATCHDOG_S = 0.84  # the robot's own
+REACTION_S = 0.4
+MASTER_TIMEOUT_S = 1.0
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def listens(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+class CameleonStopTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.bench = RobotBench()
+        cls.binary = roslib.packages.find_node("perennial_nav", "cameleon_driver_node")[0]
+
+    def setUp(self):
+        self.processes = []
+
+    def tearDown(self):
+        self.bench.release()
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        self.bench.wait_until_still()
+
+    def start(self, command, **environment):
+        process = subprocess.Popen(command, env=dict(os.environ, **environment))
+        self.processes.append(process)
+        return process
+
+    def start_driver(self, *arguments, **environment):
+        return self.start([self.binary, "__name:=cameleon_driver", "_robot_host:=127.0.0.1", "_robot_port:=50115",
+                           "_master_timeout_s:=%f" % MASTER_TIMEOUT_S, *arguments], **environment)
+
+    def stopping_time(self, begin):
+        self.bench.wait_until_still()
+        return self.bench.first_still_after(begin) - begin
+
+    def end_driver(self, how):
+        driver = self.start_driver()
+        self.bench.drive(0.3)
+        self.bench.wait_until_moving()
+        begin = self.bench.now()
+        driver.send_signal(how)
+        took = self.stopping_time(begin)
+        driver.wait(10.0)
+        still = self.bench.now()
+        self.bench.wait_loops(10)
+        self.assertFalse(self.bench.moved_since(still))
+        return took, driver.returncode
+
+    def test_stops_on_ctrl_c(self):
+        took, status = self.end_driver(signal.SIGINT)
+        self.assertEqual(status, 0)
+        self.assertLess(took, 0.1 + REACTION_S)
+
+    def test_stops_on_termination(self):
+        took, status = self.end_driver(signal.SIGTERM)
+        self.assertEqual(status, 0)
+        self.assertLess(took, 0.1 + REACTION_S)
+
+    def test_the_robot_stops_itself_when_the_driver_is_killed(self):
+        took, _ = self.end_driver(signal.SIGKILL)
+        self.assertLess(took, WATCHDOG_S + REACTION_S)
+
+    def test_stops_when_the_master_is_gone(self):
+        port = free_port()
+        uri = "http://127.0.0.1:%d" % port
+        core = self.start(["rosmaster", "--core", "-p", str(port)], ROS_MASTER_URI=uri)
+        self.bench.wait_for(lambda: listens(port), "the second master is up")
+        self.start_driver(ROS_MASTER_URI=uri)
+        commander = ["rostopic", "pub", "-r", "20", "cmd_vel", "geometry_msgs/Twist",
+                     "{linear: {x: 0.3}, angular: {z: 0.0}}"]
+        self.start(commander, ROS_MASTER_URI=uri)
+        self.bench.wait_until_moving()
+        begin = self.bench.now()
+        core.kill()
+        core.wait(20.0)
+        gone = self.bench.now()
+        took = self.stopping_time(begin)
+        self.assertLess(took, (gone - begin) + MASTER_TIMEOUT_S + REACTION_S)
+        still = self.bench.now()
+        self.bench.wait_loops(25)  # the commander goes on: the connection of its topic does not need the master
+        self.assertFalse(self.bench.moved_since(still))
+
+    def test_refuses_wrong_parameters(self):
+        for index, (key, value) in enumerate((("max_forward_mps", -1), ("no_such_parameter", 1), ("robot_port", 70000))):
+            # Parameters stay on the server: each driver needs a name of its own.
+            driver = subprocess.run([self.binary, "__name:=refused_%d" % index, "_%s:=%s" % (key, value)],
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=20.0, check=False)
+            self.assertEqual(driver.returncode, 1, key)
+            self.assertIn(key, driver.stdout.decode())
+
+
+if __name__ == "__main__":
+    rospy.init_node("cameleon_stop_test")
+    rostest.rosrun("perennial_nav", "cameleon_stop", CameleonStopTest)
