@@ -7,7 +7,7 @@
 #include "perennial/strategies/summary_map.h"
 #include "perennial/testing/strategy_conformance.h"
 
-namespace perennial::testing {
+namespace perennial::test_tools {
 namespace {
 
 using namespace strategies;  // NOLINT: names of the classes under test
@@ -35,4 +35,4 @@ INSTANTIATE_TEST_SUITE_P(
         strategyUnderTest<FremenMap>({{"order", 16}, {"min_samples", 1}, {"min_cycles", 0.0}})));
 
 }  // namespace
-}  // namespace perennial::testing
+}  // namespace perennial::test_tools

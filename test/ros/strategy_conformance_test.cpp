@@ -5,7 +5,7 @@
 #include <cctype>
 #include <pluginlib/class_loader.hpp>
 
-namespace perennial::testing {
+namespace perennial::test_tools {
 namespace {
 
 using StrategyLoader = pluginlib::ClassLoader<MapStrategy>;
@@ -59,6 +59,6 @@ int run(int argc, char** argv) {
   return RUN_ALL_TESTS();
 }
 
-}  // namespace perennial::testing
+}  // namespace perennial::test_tools
 
-int main(int argc, char** argv) { return perennial::testing::run(argc, argv); }
+int main(int argc, char** argv) { return perennial::test_tools::run(argc, argv); }
