@@ -9,9 +9,12 @@
 #include <tuple>
 #include <utility>
 
+#include "perennial/core/popcount_clones.h"
+
 namespace perennial {
 namespace {
 
+PERENNIAL_POPCOUNT_CLONES
 int distanceToNearest(const Descriptor& descriptor, const std::vector<Descriptor>& others) {
   int nearest = Descriptor::kBits + 1;
   for (const Descriptor& other : others) {
