@@ -2,6 +2,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "perennial/strategies/aggressive_map.h"
+#include "perennial/strategies/anchored_map.h"
 #include "perennial/strategies/fremen_map.h"
 #include "perennial/strategies/latest_map.h"
 #include "perennial/strategies/multiple_maps.h"
@@ -18,3 +19,4 @@ PLUGINLIB_EXPORT_CLASS(perennial::strategies::SummaryMap, perennial::MapStrategy
 PLUGINLIB_EXPORT_CLASS(perennial::strategies::MultipleMaps, perennial::MapStrategy)
 PLUGINLIB_EXPORT_CLASS(perennial::strategies::ScoreBased, perennial::MapStrategy)
 PLUGINLIB_EXPORT_CLASS(perennial::strategies::FremenMap, perennial::MapStrategy)
+PLUGINLIB_EXPORT_CLASS(perennial::strategies::AnchoredMap, perennial::MapStrategy)

@@ -1,5 +1,6 @@
 // The conformance suite over this package's strategies with settings other than the default ones.
 #include "perennial/strategies/aggressive_map.h"
+#include "perennial/strategies/anchored_map.h"
 #include "perennial/strategies/fremen_map.h"
 #include "perennial/strategies/multiple_maps.h"
 #include "perennial/strategies/score_based.h"
@@ -18,11 +19,14 @@ INSTANTIATE_TEST_SUITE_P(RandomAdd, StrategyConformance,
                                            strategyUnderTest<SummaryMap>({{"random_add", true},
                                                                           {"max_features", 200}}),
                                            strategyUnderTest<ScoreBased>({{"random_add", true}}),
-                                           strategyUnderTest<FremenMap>({{"random_add", true}})));
+                                           strategyUnderTest<FremenMap>({{"random_add", true}}),
+                      strategyUnderTest<AnchoredMap>({{"random_add", true}})));
 
 INSTANTIATE_TEST_SUITE_P(
     Limits, StrategyConformance,
-    ::testing::Values(
+    ::testing::Values(strategyUnderTest<AnchoredMap>({{"share", 1.0}, {"features_kept", 1}}),
+                      strategyUnderTest<AnchoredMap>({{"features_kept", 100}, {"taught_share", 0.0}}),
+                      
         strategyUnderTest<SummaryMap>({{"share", 1.0}, {"max_features", 1}}),
         strategyUnderTest<SummaryMap>({{"share", 1.0}, {"max_features", 300}}),
         strategyUnderTest<MultipleMaps>({{"max_alternatives", 1}}),

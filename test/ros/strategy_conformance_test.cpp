@@ -38,8 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Plugins, StrategyConformance, ::testing::ValuesIn(allPl
 
 TEST(StrategyPlugins, areDeclared) {
   const auto names = declared();
-  for (const char* name :
-       {"static", "latest", "aggressive", "strict", "summary", "multiple", "score_based", "fremen"}) {
+  for (const char* name : {"static", "latest", "aggressive", "strict", "summary", "multiple", "score_based",
+                           "fremen", "anchored"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }
