@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <unordered_map>
 #include <utility>
 
 #include "perennial/core/active_map.h"
@@ -36,34 +35,43 @@ class LifeRecorder {
   explicit LifeRecorder(const LocalMap& map) { record(map, 0); }
 
   void record(const LocalMap& map, std::size_t traversal) {
-    std::unordered_map<std::uint32_t, std::size_t> born;
-    born.reserve(map.size());
-    for (const std::uint32_t id : map.ids) {
-      const auto known = born_.find(id);
-      born.emplace(id, known == born_.end() ? traversal : known->second);
-    }
-    for (const auto& [id, since] : born_) {
-      if (born.count(id) == 0) {
-        count(lives_.dropped, traversal - since);
+    std::vector<std::uint32_t> ids = map.ids;
+    std::sort(ids.begin(), ids.end());  // they nearly always are
+    std::vector<Life> living;
+    living.reserve(ids.size());
+    auto old = living_.begin();
+    for (const std::uint32_t id : ids) {
+      for (; old != living_.end() && old->id < id; ++old) {
+        count(lives_.dropped, traversal - old->born);
       }
+      const bool known = old != living_.end() && old->id == id;
+      living.push_back(known ? *old++ : Life{id, traversal});
     }
-    born_ = std::move(born);
+    for (; old != living_.end(); ++old) {
+      count(lives_.dropped, traversal - old->born);
+    }
+    living_ = std::move(living);
   }
 
   FeatureLives finish(std::size_t traversal) {
-    for (const auto& entry : born_) {
-      count(lives_.kept, traversal - entry.second);
+    for (const Life& life : living_) {
+      count(lives_.kept, traversal - life.born);
     }
     return std::move(lives_);
   }
 
  private:
+  struct Life {
+    std::uint32_t id = 0;
+    std::size_t born = 0;
+  };
+
   static void count(std::vector<std::size_t>& counts, std::size_t age) {
     counts.resize(std::max(counts.size(), age + 1));
     ++counts[age];
   }
 
-  std::unordered_map<std::uint32_t, std::size_t> born_;
+  std::vector<Life> living_;  ///< by identity
   FeatureLives lives_;
 };
 
