@@ -6,6 +6,22 @@
 
 namespace perennial {
 
+ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stamp_s) {
+  ActiveMap active;
+  active.index = map.index;
+  active.distance_m = map.distance_m;
+  for (const std::vector<std::size_t>& selected : strategy.alternatives(map, stamp_s)) {
+    ActiveMap::Alternative alternative;
+    alternative.features.reserve(selected.size());
+    for (const std::size_t i : selected) {
+      alternative.features.add(map.features.keypoints.at(i), map.features.descriptors.at(i));
+      alternative.positions.push_back(static_cast<std::uint32_t>(i));
+    }
+    active.alternatives.push_back(std::move(alternative));
+  }
+  return active;
+}
+
 ActiveRegistration registerView(const HistogramRegistration& registration, const ActiveMap& map,
                                 const FeatureSet& view) {
   ActiveRegistration best;

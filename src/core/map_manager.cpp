@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "perennial/core/error.h"
+#include "perennial/core/learning.h"
 
 namespace perennial {
 namespace {
@@ -66,25 +67,12 @@ std::vector<std::uint32_t> MapManager::due(double distance_m) {
 
 LocalMap MapManager::readForStrategy(std::uint32_t index) const {
   LocalMap map = file_.read(index);
-  map.adopt(numbersOwner(*strategy_), strategy_->numbersPerFeature());
+  takeOver(map, *strategy_);
   return map;
 }
 
 ActiveMap MapManager::activeMap(std::uint32_t index) const {
-  const LocalMap map = readForStrategy(index);
-  ActiveMap active;
-  active.index = index;
-  active.distance_m = map.distance_m;
-  for (const std::vector<std::size_t>& selected : strategy_->alternatives(map, stamp_s_)) {
-    ActiveMap::Alternative alternative;
-    alternative.features.reserve(selected.size());
-    for (const std::size_t i : selected) {
-      alternative.features.add(map.features.keypoints.at(i), map.features.descriptors.at(i));
-      alternative.positions.push_back(static_cast<std::uint32_t>(i));
-    }
-    active.alternatives.push_back(std::move(alternative));
-  }
-  return active;
+  return activate(*strategy_, readForStrategy(index), stamp_s_);
 }
 
 void MapManager::observe(std::uint32_t index, double local_map_distance_m, Observation observation) {
@@ -95,9 +83,7 @@ void MapManager::observe(std::uint32_t index, double local_map_distance_m, Obser
   if (index >= kPlacesUntilLearned) {
     learn(index - kPlacesUntilLearned + 1);
   }
-  const bool teaches = observation.registration.displacement_px.has_value() &&
-                       observation.registration.inliers >= settings_.min_inliers_for_update;
-  if (!teaches || index < learned_before_) {
+  if (!teaches(observation, settings_.min_inliers_for_update) || index < learned_before_) {
     return;
   }
   const double offset_m = std::abs(observation.distance_m - local_map_distance_m);
@@ -111,11 +97,7 @@ void MapManager::learn(std::uint32_t before_index) {
   while (!pending_.empty() && pending_.begin()->first < before_index) {
     const auto& [index, pending] = *pending_.begin();
     LocalMap map = readForStrategy(index);
-    strategy_->update(map, pending.observation);
-    const std::string problem = map.problem();
-    if (!problem.empty()) {
-      throw Error("strategy " + strategy_->name() + " broke local map " + std::to_string(index) + ": " + problem);
-    }
+    perennial::learn(map, *strategy_, pending.observation);
     file_.stage(map);
     ++updated_;
     pending_.erase(pending_.begin());

@@ -7,10 +7,13 @@
 #include <cstddef>
 #include <tuple>
 
+#include "perennial/core/popcount_clones.h"
+
 namespace perennial {
 namespace {
 
 /// Index of the view feature that passes the ratio test against all others, or -1.
+PERENNIAL_POPCOUNT_CLONES
 std::int32_t findPartner(const Descriptor& descriptor, const std::vector<Descriptor>& view, double ratio) {
   int nearest = Descriptor::kBits + 1;
   int second = Descriptor::kBits + 1;

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <pluginlib/class_loader.hpp>
 
-namespace perennial::testing {
+namespace perennial::test_tools {
 namespace {
 
 using StrategyLoader = pluginlib::ClassLoader<MapStrategy>;
@@ -38,7 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Plugins, StrategyConformance, ::testing::ValuesIn(allPl
 
 TEST(StrategyPlugins, areDeclared) {
   const auto names = declared();
-  for (const char* name : {"static", "latest", "score_based"}) {
+  for (const char* name : {"static", "latest", "aggressive", "strict", "summary", "multiple", "score_based",
+                           "fremen", "anchored"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }
@@ -58,6 +59,6 @@ int run(int argc, char** argv) {
   return RUN_ALL_TESTS();
 }
 
-}  // namespace perennial::testing
+}  // namespace perennial::test_tools
 
-int main(int argc, char** argv) { return perennial::testing::run(argc, argv); }
+int main(int argc, char** argv) { return perennial::test_tools::run(argc, argv); }

@@ -8,8 +8,8 @@
 namespace perennial_example_strategy {
 namespace {
 
-using perennial::testing::StrategyConformance;
-using perennial::testing::strategyUnderTest;
+using perennial::test_tools::StrategyConformance;
+using perennial::test_tools::strategyUnderTest;
 
 // What every strategy must hold to.
 INSTANTIATE_TEST_SUITE_P(OldestFirst, StrategyConformance,
@@ -21,13 +21,13 @@ TEST(OldestFirst, keepsWhatWasSeen) {
   OldestFirst strategy;
   perennial::ParameterReader reader({{"exchange", 0.5}});
   strategy.configure(reader);
-  perennial::testing::SyntheticPlace place(1);
+  perennial::test_tools::SyntheticPlace place(1);
   perennial::LocalMap map = place.teach(1000.0, 40);
   map.adopt(perennial::numbersOwner(strategy), strategy.numbersPerFeature());
 
   const double night_s = 50000.0;
   const perennial::Observation seen =
-      perennial::testing::observe(strategy, map, place.view(night_s, 8.0, 60), night_s);
+      perennial::test_tools::observe(strategy, map, place.view(night_s, 8.0, 60), night_s);
   ASSERT_TRUE(seen.registration.displacement_px);
   ASSERT_GT(seen.registration.inliers, 5);
   ASSERT_LE(seen.registration.inliers, 20) << "so that all of them fit into the half that stays";

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "perennial/core/feature.h"
+#include "perennial/core/local_map.h"
+#include "perennial/core/map_strategy.h"
 #include "perennial/core/registration.h"
 
 namespace perennial {
@@ -21,6 +23,10 @@ struct ActiveMap {
   double distance_m = 0.0;
   std::vector<Alternative> alternatives;  ///< at least one
 };
+
+/// A local map as the strategy wants it used at this time. The map's numbers must be the strategy's (see
+/// takeOver() in learning.h).
+ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stamp_s);
 
 /// Registration against a local map: the result for the alternative that won.
 struct ActiveRegistration {

@@ -7,36 +7,44 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <set>
+#include <opencv2/core.hpp>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "perennial/core/error.h"
 #include "perennial/core/local_map.h"
+#include "perennial/core/map_file.h"
 #include "perennial/core/map_strategy.h"
 #include "perennial/core/parameter_reader.h"
 #include "perennial/testing/synthetic_place.h"
+#include "perennial/testing/temporary_folder.h"
 
 /// What every map strategy must hold to, as a gtest suite to run over your own. Include this header in
 /// exactly one source of a test that links gtest and perennial_core, and say what is to be tested:
 ///
 ///     #include "perennial/testing/strategy_conformance.h"
 ///
-///     using perennial::testing::StrategyConformance;
-///     using perennial::testing::strategyUnderTest;
+///     using perennial::test_tools::StrategyConformance;
+///     using perennial::test_tools::strategyUnderTest;
 ///     INSTANTIATE_TEST_SUITE_P(Mine, StrategyConformance,
 ///                              testing::Values(strategyUnderTest<MyStrategy>(),
 ///                                              strategyUnderTest<MyStrategy>({{"exchange", 0.5}})));
 ///
 /// It teaches local maps of synthetic places, lets the strategy learn from up to a thousand traversals by day
 /// and by night, and checks what the rest of the system relies on. Everything is seeded: a failure repeats.
-namespace perennial::testing {
+namespace perennial::test_tools {
 
 struct StrategyUnderTest {
   std::function<std::shared_ptr<MapStrategy>()> create;  ///< a new instance, not configured
   Parameters parameters;                                 ///< what it is configured with
 };
+
+/// How gtest shows it.
+inline void PrintTo(const StrategyUnderTest& tested, std::ostream* stream) {
+  *stream << tested.create()->name() << " with " << tested.parameters.size() << " parameters set";
+}
 
 template <typename Strategy>
 StrategyUnderTest strategyUnderTest(Parameters parameters = {}) {
@@ -81,6 +89,37 @@ class StrategyConformance : public ::testing::TestWithParam<StrategyUnderTest> {
       ASSERT_TRUE(used.empty() || used.back() < map.size())
           << "uses feature " << used.back() << " of " << map.size();
     }
+  }
+
+  /// Stores a map of one place that was just taught.
+  static void write(const std::string& file, const LocalMap& map) {
+    MapMetadata metadata;
+    metadata.name = "conformance";
+    metadata.image_width = 16;
+    metadata.image_height = 8;
+    metadata.image_encoding = "mono8";
+    metadata.extraction = "synthetic";
+    metadata.map_interval_m = 0.2;
+    metadata.taught_stamp_s = map.stamp_s;
+    MapWriter writer(file, metadata, false);
+    writer.add(map, cv::Mat::zeros(8, 16, CV_8UC1));
+    PathProfile profile;
+    profile.add(0.0, {0.5, 0.0, 0.0});
+    writer.finish(profile, 1.0);
+  }
+
+  /// One traversal of a stored map, as the map manager does it.
+  void traverse(MapFile& file, SyntheticPlace& place, double stamp_s) const {
+    const auto strategy = create();
+    LocalMap map = file.read(0);
+    adopt(map, *strategy);
+    const Observation observation = nextObservation(*strategy, map, place, stamp_s);
+    file.beginTraversal(numbersOwner(*strategy), stamp_s);
+    if (observation.registration.displacement_px) {
+      strategy->update(map, observation);
+      file.stage(map);
+    }
+    file.commitTraversal(stamp_s);
   }
 
   static void expectSame(const LocalMap& a, const LocalMap& b) {
@@ -187,6 +226,37 @@ TEST_P(StrategyConformance, isDeterministicAndKeepsItsStateInTheMap) {
   }
 }
 
+TEST_P(StrategyConformance, survivesSavingLoadingAndRollback) {
+  const TemporaryFolder folder;
+  SyntheticPlace place(7);
+  LocalMap taught = place.teach(kStart, kTaught);
+  taught.index = 0;
+  write(folder / "map", taught);
+  double stamp_s = kStart;
+  std::vector<LocalMap> states;  // after each traversal that was stored
+  for (int traversal = 0; traversal < 12; ++traversal) {
+    stamp_s = nextStamp(place, stamp_s);
+    {
+      MapFile file(folder / "map");
+      traverse(file, place, stamp_s);
+      states.resize(file.traversals().size(), taught);
+      states.back() = file.read(0);
+    }
+    ASSERT_NO_FATAL_FAILURE(expectSame(MapFile(folder / "map").read(0), states.back()))
+        << "after closing the file";
+    ASSERT_EQ(states.back().problem(), "");
+  }
+  if (states.size() < 4) {
+    return;  // learned too little to roll anything back
+  }
+  MapFile file(folder / "map");
+  const auto middle = file.traversals()[states.size() / 2];
+  file.rollback(middle.id);
+  ASSERT_NO_FATAL_FAILURE(expectSame(file.read(0), states[states.size() / 2]));
+  traverse(file, place, stamp_s + 3600.0);
+  EXPECT_EQ(file.read(0).problem(), "") << "learning goes on from there";
+}
+
 TEST_P(StrategyConformance, losesNothingOnAnEmptyView) {
   const auto strategy = create();
   SyntheticPlace place(3);
@@ -272,4 +342,4 @@ TEST_P(StrategyConformance, takesMapsOverFromOtherStrategies) {
   expectSame(map, fresh);
 }
 
-}  // namespace perennial::testing
+}  // namespace perennial::test_tools

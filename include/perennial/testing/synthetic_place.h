@@ -12,7 +12,7 @@
 #include "perennial/core/map_strategy.h"
 #include "perennial/core/registration.h"
 
-namespace perennial::testing {
+namespace perennial::test_tools {
 
 /// A place as features only: landmarks of which some are always there and others by day or by night only,
 /// seen displaced, with noise in position and descriptor, among clutter that is never seen again. What tests
@@ -120,4 +120,4 @@ inline Observation observe(const MapStrategy& strategy, const LocalMap& map, Fea
   return best;
 }
 
-}  // namespace perennial::testing
+}  // namespace perennial::test_tools

@@ -1,0 +1,328 @@
+#!/usr/bin/env python3
+"""Plots and page of `rosrun perennial_nav report`: plot_report.py OUT RUN...
+
+Each RUN is a folder written by `evaluate`; OUT holds comparisons.csv already.
+"""
+import base64
+import csv
+import datetime
+import html
+import json
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.dates  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
+
+# Okabe and Ito's colours, which colour-blind people can tell apart, without the yellow that is too light for a line;
+# then the same again, dashed.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+DASHES = ["-", "--", ":"]
+MOST_CURVES = 12
+SEASONS = {12: "winter", 1: "winter", 2: "winter", 3: "spring", 4: "spring", 5: "spring",
+           6: "summer", 7: "summer", 8: "summer", 9: "autumn", 10: "autumn", 11: "autumn"}
+SEASON_COLOURS = {"winter": "#dfe9f5", "spring": "#e6f3e0", "summer": "#fdf6d8", "autumn": "#f8e7d8"}
+DAY_HOURS_UTC = (6, 18)
+
+
+class Run:
+    def __init__(self, folder):
+        self.name = os.path.basename(os.path.normpath(folder))
+        self.label = self.name
+        with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
+            self.summary = json.load(stream)
+        with open(os.path.join(folder, "errors.csv"), encoding="utf-8", newline="") as stream:
+            self.rows = list(csv.DictReader(stream))
+        with open(os.path.join(folder, "lives.csv"), encoding="utf-8", newline="") as stream:
+            self.lives = [(int(row["age_traversals"]), int(row["dropped"]), int(row["kept"]))
+                          for row in csv.DictReader(stream)]
+        for row in self.rows:
+            row["time"] = parse_time(row["stamp"])
+            row["error"] = float(row["error_px"]) if row["error_px"] else None
+
+    def absolute_errors(self):
+        return sorted(abs(row["error"]) for row in self.rows if row["error"] is not None)
+
+    def by_traversal(self):
+        """(time, [signed errors]) of each traversal, in order of the traversals' names."""
+        traversals = {}
+        for row in self.rows:
+            traversals.setdefault(row["traversal"], []).append(row)
+        for name in sorted(traversals):
+            rows = traversals[name]
+            yield rows[0]["time"], [row["error"] for row in rows if row["error"] is not None]
+
+
+def parse_time(text):
+    pattern = "%Y-%m-%dT%H:%M:%S.%fZ" if "." in text else "%Y-%m-%dT%H:%M:%SZ"
+    return datetime.datetime.strptime(text, pattern)
+
+
+def median(values):
+    ordered = sorted(values)
+    middle = len(ordered) // 2
+    return ordered[middle] if len(ordered) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+
+
+def rank(run):
+    """Best first: by the share within 20 px, then the mean error."""
+    mean = run.summary["mean_error_px"]
+    return (-run.summary["within_px"]["20"], mean if mean is not None else float("inf"))
+
+
+def chosen(runs):
+    """Runs to draw: all if they are few, else the best of each strategy."""
+    if len(runs) <= MOST_CURVES:
+        return sorted(runs, key=rank)
+    best = {}
+    for run in sorted(runs, key=rank):
+        best.setdefault(run.summary["strategy"], run)
+    return list(best.values())[:MOST_CURVES]
+
+
+def shorten_labels(runs):
+    """Labels without the settings that all runs share."""
+    parts = [run.name.split(",") for run in runs]
+    shared = set(parts[0][1:]).intersection(*(set(p[1:]) for p in parts))
+    labels = [",".join(part for part in p if part not in shared) for p in parts]
+    for run, label in zip(runs, labels):
+        run.label = label if labels.count(label) == 1 else run.name
+
+
+def set_ticks(axis, lower, upper):
+    """Readable ticks for an axis that is linear about zero and logarithmic beyond."""
+    steps = [value * 10 ** power for power in range(0, 4) for value in (1, 2, 5)]
+    ticks = [0.5 * sign for sign in (-1, 1)] + [0] + [step * sign for step in steps for sign in (-1, 1)]
+    axis.set_ticks(sorted(tick for tick in ticks if lower <= tick <= upper))
+    axis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+    axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
+def styles(runs):
+    return {run.name: {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i // len(COLOURS) % len(DASHES)]}
+            for i, run in enumerate(runs)}
+
+
+def legend(axes):
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
+
+
+def plot_distribution(runs, axes):
+    rows = []
+    style = styles(runs)
+    for run in runs:
+        errors = run.absolute_errors()
+        everything = max(1, len(run.rows))
+        xs, ys = [0.0], [0.0]
+        for i, error in enumerate(errors):
+            xs += [error, error]
+            ys += [i / everything, (i + 1) / everything]
+        xs.append(1000.0)
+        ys.append(len(errors) / everything)
+        axes.plot(xs, ys, label=run.label, linewidth=1.8, **style[run.name])
+        rows += [(run.name, "%.6g" % x, "%.6g" % y) for x, y in zip(xs, ys)]
+    axes.set_xlim(0, 50)
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel("threshold of the error, px")
+    axes.set_ylabel("share of all registrations within it")
+    axes.set_title("Distribution of the error (a missing answer is never within)")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "threshold_px", "probability"), rows
+
+
+def mark_seasons(axes, times):
+    day, last, named = min(times), max(times), set()
+    while day <= last:
+        following = (day.replace(day=1) + datetime.timedelta(days=32)).replace(day=1, hour=0, minute=0, second=0)
+        season = SEASONS[day.month]
+        axes.axvspan(day, min(following, last), color=SEASON_COLOURS[season], zorder=0,
+                     label=None if season in named else season)
+        named.add(season)
+        day = following
+
+
+def plot_time(runs, axes):
+    rows, times = [], []
+    style = styles(runs)
+    for run in runs:
+        points = sorted((time, median([abs(e) for e in errors])) for time, errors in run.by_traversal() if errors)
+        for kind, face in (("day", style[run.name]["color"]), ("night", "none")):
+            of_kind = [p for p in points if (DAY_HOURS_UTC[0] <= p[0].hour < DAY_HOURS_UTC[1]) == (kind == "day")]
+            axes.scatter([p[0] for p in of_kind], [p[1] for p in of_kind], s=12, facecolors=face, alpha=0.35,
+                         edgecolors=style[run.name]["color"], linewidths=0.8, zorder=2)
+            rows += [(run.name, p[0].isoformat() + "Z", kind, "%.6g" % p[1]) for p in of_kind]
+        smooth = [median([p[1] for p in points[max(0, i - 4):i + 5]]) for i in range(len(points))]
+        axes.plot([p[0] for p in points], smooth, linewidth=1.6, zorder=3, label=run.label, **style[run.name])
+        times += [p[0] for p in points]
+    if times:
+        mark_seasons(axes, times)
+    axes.set_yscale("symlog", linthresh=1.0)
+    axes.set_ylim(bottom=0)
+    set_ticks(axes.yaxis, *axes.get_ylim())
+    axes.xaxis.set_major_formatter(matplotlib.dates.ConciseDateFormatter(axes.xaxis.get_major_locator()))
+    axes.set_xlabel("time; filled: day (%d to %d h UTC), open: night" % DAY_HOURS_UTC)
+    axes.set_ylabel("median error of a traversal, px")
+    axes.set_title("Error over time (lines: median of nine traversals)")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "time", "light", "median_error_px"), rows
+
+
+def plot_drift(runs, axes):
+    rows = []
+    style = styles(runs)
+    for run in runs:
+        window, xs, ys = [], [], []
+        for traversal, (_, errors) in enumerate(run.by_traversal(), 1):
+            window = (window + [errors])[-10:]
+            values = [error for some in window for error in some]
+            if values:
+                xs.append(traversal)
+                ys.append(sum(values) / len(values))
+        axes.plot(xs, ys, label=run.label, linewidth=1.6, **style[run.name])
+        rows += [(run.name, x, "%.6g" % y) for x, y in zip(xs, ys)]
+    axes.axhline(0.0, color="#888888", linewidth=0.8)
+    axes.set_yscale("symlog", linthresh=1.0)
+    set_ticks(axes.yaxis, *axes.get_ylim())
+    axes.set_xlabel("traversal")
+    axes.set_ylabel("mean signed error of ten traversals, px")
+    axes.set_title("Drift: where the frame of the map goes")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "traversal", "mean_signed_error_px"), rows
+
+
+def plot_lives(runs, axes):
+    """Kaplan and Meier's estimate: features still there at the end lived at least so long."""
+    rows = []
+    style = styles(runs)
+    for run in runs:
+        at_risk = sum(dropped + kept for _, dropped, kept in run.lives)
+        share, xs, ys = 1.0, [0], [1.0]
+        for age, dropped, kept in run.lives:
+            if at_risk > 0:
+                share *= 1.0 - dropped / at_risk
+            at_risk -= dropped + kept
+            xs.append(age)
+            ys.append(share)
+        axes.step(xs, ys, where="post", label=run.label, linewidth=1.6, **style[run.name])
+        rows += [(run.name, x, "%.6g" % y) for x, y in zip(xs, ys)]
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel("age, traversals")
+    axes.set_ylabel("share of features that live longer")
+    axes.set_title("How long features live")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "age_traversals", "share"), rows
+
+
+FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("lives", plot_lives)]
+
+
+def write_csv(path, header, rows):
+    with open(path, "w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(header)
+        writer.writerows(rows)
+
+
+def draw(out, name, function, runs):
+    figure, axes = plt.subplots(figsize=(10.5, 4.8), constrained_layout=True)
+    header, rows = function(runs, axes)
+    for kind in ("png", "svg"):
+        figure.savefig(os.path.join(out, name + "." + kind), dpi=110)
+    plt.close(figure)
+    write_csv(os.path.join(out, name + ".csv"), header, rows)
+    with open(os.path.join(out, name + ".png"), "rb") as stream:
+        picture = base64.b64encode(stream.read()).decode()
+    return '<p><img alt="%s" src="data:image/png;base64,%s"></p>' % (name, picture)
+
+
+def number(value, digits=2):
+    return "" if value is None else "%.*f" % (digits, value)
+
+
+def table(header, rows):
+    def cells(tag, values):
+        return "<tr>" + "".join("<%s>%s</%s>" % (tag, html.escape(str(value)), tag) for value in values) + "</tr>"
+
+    return "<table>" + cells("th", header) + "".join(cells("td", row) for row in rows) + "</table>"
+
+
+def table_of_runs(out, runs):
+    header = ["run", "registrations", "answered %", "within 5 px %", "10", "20", "35", "50", "mean px", "median px",
+              "mean signed px", "ms per registration", "ms per extraction"]
+    rows = []
+    for run in sorted(runs, key=rank):
+        s = run.summary
+        rows.append([run.name, s["registrations"], number(100 * s["answered"], 1)] +
+                    [number(100 * s["within_px"][key], 1) for key in ("5", "10", "20", "35", "50")] +
+                    [number(s["mean_error_px"]), number(s["median_error_px"]), number(s["mean_signed_error_px"]),
+                     number(s["ms_per_registration"]), number(s["ms_per_extraction"])])
+    write_csv(os.path.join(out, "runs.csv"), header, rows)
+    return table(header, rows)
+
+
+def probability(text):
+    value = float(text)
+    return "&lt; 0.0001" if value < 1e-4 else "%.4f" % value
+
+
+def table_of_comparisons(out, drawn):
+    names = {run.name for run in drawn}
+    lines = ["<table><tr>" + "".join("<th>%s</th>" % cell for cell in (
+        "a", "b", "pairs", "only b answered", "only a answered", "neither", "mean difference a - b, px", "95 % interval",
+        "p", "p after Holm")) + "</tr>"]
+    with open(os.path.join(out, "comparisons.csv"), encoding="utf-8", newline="") as stream:
+        for row in csv.DictReader(stream):
+            if row["a"] not in names or row["b"] not in names:
+                continue
+            cells = [html.escape(row["a"]), html.escape(row["b"]), row["pairs"], row["missing_a"], row["missing_b"],
+                     row["missing_both"], "%.2f" % float(row["mean_difference_px"]),
+                     "%.2f to %.2f" % (float(row["low_px"]), float(row["high_px"])), probability(row["p"]),
+                     probability(row["p_holm"])]
+            lines.append("<tr>" + "".join("<td>%s</td>" % cell for cell in cells) + "</tr>")
+    return "".join(lines) + "</table>"
+
+
+STYLE = """body { font-family: sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; }
+img { max-width: 100%; } table { border-collapse: collapse; font-size: 85%; }
+th, td { border-bottom: 1px solid #ccc; padding: 0.25em 0.6em; text-align: right; }
+th:first-child, td:first-child { text-align: left; }"""
+
+
+def page(out, runs):
+    drawn = chosen(runs)
+    shorten_labels(drawn)
+    parts = ["<h1>Map strategies compared</h1>",
+             "<p>%d runs on: %s.</p>" % (len(runs), html.escape("; ".join(sorted({r.summary["input"] for r in runs}))))]
+    if len(drawn) < len(runs):
+        parts.append("<p>Drawn and compared below is the best run of each strategy (by the share within 20 px, then "
+                     "the mean error); the table holds all of them, comparisons.csv all pairs.</p>")
+    parts += [draw(out, name, function, drawn) for name, function in FIGURES]
+    parts += ["<h2>All runs</h2>", "<p>Shares are of all registrations: a missing answer counts as wrong. Means and the "
+              "median are over the answered ones.</p>", table_of_runs(out, runs)]
+    parts += ["<h2>Paired t-tests</h2>", "<p>Absolute errors, over the registrations that both runs answered; the others "
+              "are counted. The plain p-value is what the literature reports; Holm's correction accounts for the number "
+              "of comparisons.</p>", table_of_comparisons(out, drawn)]
+    with open(os.path.join(out, "report.html"), "w", encoding="utf-8") as stream:
+        stream.write("<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Map strategies compared"
+                     "</title><style>%s</style></head><body>%s</body></html>" % (STYLE, "\n".join(parts)))
+
+
+def main(arguments):
+    if len(arguments) < 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    page(arguments[0], [Run(folder) for folder in arguments[1:]])
+    print(os.path.join(arguments[0], "report.html"))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

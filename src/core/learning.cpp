@@ -1,0 +1,26 @@
+#include "perennial/core/learning.h"
+
+#include <string>
+
+#include "perennial/core/error.h"
+
+namespace perennial {
+
+void takeOver(LocalMap& map, const MapStrategy& strategy) {
+  map.adopt(numbersOwner(strategy), strategy.numbersPerFeature());
+}
+
+bool teaches(const Observation& observation, int min_inliers_for_update) {
+  return observation.registration.displacement_px.has_value() &&
+         observation.registration.inliers >= min_inliers_for_update;
+}
+
+void learn(LocalMap& map, const MapStrategy& strategy, const Observation& observation) {
+  strategy.update(map, observation);
+  const std::string problem = map.problem();
+  if (!problem.empty()) {
+    throw Error("strategy " + strategy.name() + " broke local map " + std::to_string(map.index) + ": " + problem);
+  }
+}
+
+}  // namespace perennial

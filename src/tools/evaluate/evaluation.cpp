@@ -1,0 +1,113 @@
+#include "tools/evaluate/evaluation.h"
+
+#include <iostream>
+#include <map>
+#include <utility>
+
+#include "perennial/evaluation/parallel.h"
+#include "tools/evaluate/progress.h"
+
+namespace perennial {
+
+bool Evaluation::run() {
+  const std::vector<RunSettings> runs = checkedRuns();
+  const Dataset dataset = loadDataset(options_.dataset);
+  const std::vector<SelectedPlace> places = selectPlaces(dataset, options_.selection, problems_);
+  std::map<std::string, std::vector<RunSettings>> by_extraction;
+  for (const RunSettings& run : runs) {
+    if (!isComplete(folderOf(run), run, inputName(dataset))) {
+      by_extraction[run.extraction().describe()].push_back(run);
+    }
+  }
+  for (const auto& group : by_extraction) {
+    runAll(dataset, places, group.second);
+  }
+  for (const std::string& problem : problems_) {
+    std::cerr << "evaluate: " << problem << "\n";
+  }
+  return problems_.empty();
+}
+
+std::vector<RunSettings> Evaluation::checkedRuns() {
+  std::vector<RunSettings> runs;
+  if (!options_.sweep.empty()) {
+    runs = loadSweep(options_.sweep, options_.assignments);
+  } else {
+    runs.emplace_back(options_.strategy);
+    for (const std::string& assignment : options_.assignments) {
+      runs.back().set(assignment);
+    }
+  }
+  for (const RunSettings& run : runs) {
+    create(run);
+    run.registration();
+    run.extraction();
+    run.minInliersForUpdate();
+  }
+  return runs;
+}
+
+std::shared_ptr<MapStrategy> Evaluation::create(const RunSettings& run) {
+  const std::lock_guard<std::mutex> lock(loader_mutex_);
+  auto strategy = loader_.load(run.strategy());
+  ParameterReader reader = run.strategyReader();
+  strategy->configure(reader);
+  reader.requireAllUsed();
+  return strategy;
+}
+
+std::string Evaluation::folderOf(const RunSettings& run) const {
+  return options_.sweep.empty() ? options_.out : options_.out + "/" + run.name();
+}
+
+std::string Evaluation::inputName(const Dataset& dataset) const {
+  return dataset.manifest + " (" + std::to_string(dataset.rows.size()) +
+         " images) teach=" + options_.selection.teach + " from=" + options_.selection.from +
+         " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first);
+}
+
+void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>& places,
+                        const std::vector<RunSettings>& runs) {
+  std::size_t images = 0;
+  for (const SelectedPlace& place : places) {
+    images += place.rows.size();
+  }
+  Progress extracting("features of images", images);
+  const ReplayInput input =
+      loadReplayInput(dataset, places, runs.front().extraction(), cache_, options_.threads, problems_,
+                      [&](std::size_t done) { extracting.show(done); });
+
+  Progress replaying(std::to_string(runs.size()) + " runs", runs.size() * input.places.size());
+  std::vector<std::vector<PlaceReplayResult>> results(runs.size(),
+                                                      std::vector<PlaceReplayResult>(input.places.size()));
+  std::vector<std::size_t> places_done(runs.size(), 0);
+  std::size_t done = 0;
+  std::mutex mutex;
+  parallelFor(runs.size() * input.places.size(), options_.threads, [&](std::size_t job) {
+    const std::size_t r = job / input.places.size();
+    const std::size_t p = job % input.places.size();
+    const auto strategy = create(runs[r]);
+    results[r][p] =
+        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].minInliersForUpdate());
+    const std::lock_guard<std::mutex> lock(mutex);
+    replaying.show(++done);
+    if (++places_done[r] == input.places.size()) {
+      write(runs[r], input, results[r], inputName(dataset));
+      results[r].clear();
+    }
+  });
+}
+
+void Evaluation::write(const RunSettings& run, const ReplayInput& input,
+                       const std::vector<PlaceReplayResult>& places, const std::string& name) const {
+  RunOutput output;
+  output.input = name;
+  output.records = recordsOf(input, places, options_.skip_first);
+  for (const PlaceReplayResult& place : places) {
+    output.lives.add(place.lives);
+  }
+  output.ms_per_extraction = input.ms_per_extraction;
+  writeRun(folderOf(run), run, output);
+}
+
+}  // namespace perennial

@@ -1,0 +1,67 @@
+#include "tools/evaluate/options.h"
+
+#include <functional>
+#include <map>
+
+#include "perennial/core/error.h"
+
+namespace perennial {
+
+const char* const kEvaluateUsage =
+    R"(usage: evaluate DATASET --out DIR (--strategy NAME [--set KEY=VALUE]... | --sweep FILE.yaml [--set KEY=VALUE]...)
+
+Teaches every place of a data set (a folder with manifest.csv) from its first traversal, then registers every later one
+in order of time and lets the map learn from it. Writes errors.csv, lives.csv and summary.json to DIR, or, for a sweep,
+to a folder of DIR for each run. Runs that are complete already are not repeated.
+
+  --set KEY=VALUE   a parameter of the strategy, or of a group: registration/ratio, extraction/features,
+                    map_manager/min_inliers_for_update
+  --sweep FILE      runs a grid of strategies and parameters
+  --teach NAME      traversal that teaches instead of the first
+  --from NAME, --to NAME   first and last traversal to register
+  --skip-first N    leave the first N registrations of each place out of the results; the map learns from them all the same
+  --threads N       default: one per processor
+  --cache DIR       where extracted features are kept, default: ~/.cache/perennial_nav/features
+)";
+
+namespace {
+
+unsigned count(const std::string& option, const std::string& text) {
+  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) {
+    throw ParameterError(option + " takes a number, not '" + text + "'");
+  }
+  return static_cast<unsigned>(std::stoul(text));
+}
+
+}  // namespace
+
+EvaluateOptions parseEvaluateOptions(const std::vector<std::string>& arguments) {
+  EvaluateOptions options;
+  const std::map<std::string, std::function<void(const std::string&)>> known = {
+      {"--out", [&](const std::string& value) { options.out = value; }},
+      {"--strategy", [&](const std::string& value) { options.strategy = value; }},
+      {"--sweep", [&](const std::string& value) { options.sweep = value; }},
+      {"--set", [&](const std::string& value) { options.assignments.push_back(value); }},
+      {"--teach", [&](const std::string& value) { options.selection.teach = value; }},
+      {"--from", [&](const std::string& value) { options.selection.from = value; }},
+      {"--to", [&](const std::string& value) { options.selection.to = value; }},
+      {"--skip-first", [&](const std::string& value) { options.skip_first = count("--skip-first", value); }},
+      {"--threads", [&](const std::string& value) { options.threads = count("--threads", value); }},
+      {"--cache", [&](const std::string& value) { options.cache = value; }}};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const auto option = known.find(arguments[i]);
+    if (option != known.end() && i + 1 < arguments.size()) {
+      option->second(arguments[++i]);
+    } else if (arguments[i].rfind("-", 0) == 0 || !options.dataset.empty()) {
+      throw ParameterError("'" + arguments[i] + "' is not understood, or lacks its value");
+    } else {
+      options.dataset = arguments[i];
+    }
+  }
+  if (options.dataset.empty() || options.out.empty() || options.strategy.empty() == options.sweep.empty()) {
+    throw ParameterError("a data set, --out and one of --strategy and --sweep are needed");
+  }
+  return options;
+}
+
+}  // namespace perennial

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "perennial/evaluation/replay_input.h"
+
+namespace perennial {
+
+extern const char* const kEvaluateUsage;
+
+/// What `evaluate` is asked to do.
+struct EvaluateOptions {
+  std::string dataset;
+  std::string out;
+  std::string strategy;
+  std::string sweep;
+  std::vector<std::string> assignments;
+  ReplaySelection selection;
+  std::size_t skip_first = 0;
+  unsigned threads = 0;
+  std::string cache = defaultCacheFolder();
+};
+
+/// Throws ParameterError for anything that is not understood.
+EvaluateOptions parseEvaluateOptions(const std::vector<std::string>& arguments);
+
+}  // namespace perennial
