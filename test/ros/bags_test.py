@@ -132,6 +132,7 @@ class Bags(unittest.TestCase):
 
 if __name__ == "__main__":
     FOLDER, CORE_DISPLACEMENTS, DATA = rospy.myargv()[1:4]
+    DATA = os.environ.get("PERENNIAL_DATA", DATA)
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
     rospy.init_node("bags_test")
