@@ -105,8 +105,8 @@ void TeachRecorder::onPreempt() {
 
 perennial_nav::TeachResult TeachRecorder::finish() {
   processPending();
+  const std::unique_ptr<TeachSession> session = endSession();
   perennial_nav::TeachResult result;
-  const std::unique_ptr<TeachSession> session = std::move(session_);
   if (!session) {
     result.message = last_refusal_;
     return result;
@@ -133,9 +133,16 @@ perennial_nav::TeachResult TeachRecorder::finish() {
   return result;
 }
 
+std::unique_ptr<TeachSession> TeachRecorder::endSession() {
+  for (; !images_.empty(); images_.pop()) {
+    acknowledge(images_.front());  // nobody may wait for an image that will not be used
+  }
+  return std::move(session_);
+}
+
 void TeachRecorder::abort(const std::string& reason) {
   ROS_ERROR("teaching failed: %s", reason.c_str());
-  session_.reset();
+  endSession();
   last_refusal_ = reason;
   perennial_nav::TeachResult result;
   result.message = reason;

@@ -59,6 +59,7 @@ class TeachRecorder {
   void process(const sensor_msgs::ImageConstPtr& image, double travelled_m);
   /// Ends the session; the result tells whether the map was stored.
   perennial_nav::TeachResult finish();
+  std::unique_ptr<TeachSession> endSession();
   void abort(const std::string& reason);
   void publishProgress();
   void acknowledge(const sensor_msgs::ImageConstPtr& image);
