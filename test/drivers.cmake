@@ -20,3 +20,8 @@ if(no_rtsp_server)
 elseif(TARGET cameleon_video_node)
   add_rostest(ros/drivers/video.test DEPENDENCIES cameleon_video_node)
 endif()
+if(TARGET tara_camera_node AND TARGET park_simulator_node)
+  add_rostest(ros/drivers/cameleon_park.test
+    DEPENDENCIES cameleon_driver_node cameleon_simulator_node map_manager_node park_simulator_node perennial_strategies
+                 perennial_tara_preload repeat_navigator_node tara_camera_node tara_simulator_node teach_recorder_node)
+endif()
