@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from robot_bench import yaw_of  # noqa: E402
 from waiting import Waiter  # noqa: E402
 
-LENGTH_M = 5.0
+LENGTH_M = 7.0
 SPEED_MPS = 0.5
 LOOK_AHEAD_M = 0.8
 START_OFFSET_M = 0.15
