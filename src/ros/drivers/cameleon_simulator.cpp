@@ -18,6 +18,9 @@ geometry_msgs::Twist toTwist(const Velocity& velocity) {
   return twist;
 }
 
+/// A body that is further away in its next odometry did not drive there: tracks do not turn when it is carried.
+constexpr double kLongestBodyStep_m = 0.2;
+
 double wrapAngle(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
@@ -153,7 +156,9 @@ void CameleonSimulator::moveBody(const Velocity& velocity) {
 void CameleonSimulator::onBodyOdometry(const nav_msgs::Odometry& odometry) {
   const BodyPose pose{odometry.pose.pose.position.x, odometry.pose.pose.position.y,
                       tf2::getYaw(odometry.pose.pose.orientation)};
-  if (body_) {
+  const bool was_put_elsewhere =
+      body_ && std::hypot(pose.x_m - body_->x_m, pose.y_m - body_->y_m) > kLongestBodyStep_m;
+  if (body_ && !was_put_elsewhere) {
     const double turn = wrapAngle(pose.yaw_rad - body_->yaw_rad);
     const double heading = body_->yaw_rad + 0.5 * turn;
     const double chord =

@@ -3,6 +3,7 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/image_encodings.h>
 
+#include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
@@ -61,8 +62,11 @@ struct Node {
     }
     const double turn =
         perennial::steer({}, result.displacement_px, std::nullopt, perennial::SteeringSettings()).angular;
-    std::printf("%s: displacement %+.1f px, %d pairs agree: would turn %s with angular.z %+.3f rad/s\n", what,
-                *result.displacement_px, result.inliers, turn > 0.0 ? "LEFT" : "RIGHT", turn);
+    const char* way = std::abs(*result.displacement_px) < 1.0 ? "go straight on"
+                      : turn > 0.0                            ? "turn LEFT"
+                                                              : "turn RIGHT";
+    std::printf("%s: displacement %+.1f px, %d pairs agree: would %s, angular.z %+.3f rad/s\n", what,
+                *result.displacement_px, result.inliers, way, turn);
   }
 
   Settings settings;
