@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <unordered_set>
 
 namespace perennial {
@@ -59,6 +60,8 @@ std::string LocalMap::problem() const {
   if (!std::isfinite(distance_m) || distance_m < 0.0 || !std::isfinite(stamp_s)) {
     return "its distance or stamp is not a valid number";
   }
+  // Features are only ever added and erased, which leaves identities ascending, and so without repetition.
+  const bool ascending = std::is_sorted(ids.begin(), ids.end(), std::less_equal<>());
   std::unordered_set<std::uint32_t> seen;
   for (std::size_t i = 0; i < n; ++i) {
     const Keypoint& keypoint = features.keypoints[i];
@@ -69,7 +72,7 @@ std::string LocalMap::problem() const {
     if (ids[i] >= next_id) {
       return "feature " + std::to_string(i) + " has an identity that was never given out";
     }
-    if (!seen.insert(ids[i]).second) {
+    if (!ascending && !seen.insert(ids[i]).second) {
       return "the identity of feature " + std::to_string(i) + " is used twice";
     }
   }

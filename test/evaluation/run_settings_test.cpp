@@ -88,6 +88,11 @@ runs:
   EXPECT_EQ(runs[12].name(), "fremen,exchange=0.1,registration.ratio=0.8,score_not_matched=1");
 }
 
+TEST_F(Sweep, shippedOnesAreValid) {
+  EXPECT_EQ(loadSweep(std::string(SWEEPS) + "/strategies.yaml", {}).size(), 9U);
+  EXPECT_EQ(loadSweep(std::string(SWEEPS) + "/paper_grid.yaml", {}).size(), 64U);
+}
+
 TEST_F(Sweep, mistakesNameTheFile) {
   for (const char* content :
        {"", "runs: 5", "runs:\n  - set: {a: 1}", "runs:\n  - strategy: x\n    sett: {a: 1}", "runs: [",
