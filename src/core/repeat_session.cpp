@@ -67,7 +67,8 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   step.registration = registerView(registration_, *map, step.view);
   step.positions = map->alternatives[step.registration.alternative].positions;
   correctDistance(step, interval_m);
-  step.velocity = velocityFor(step, interval_m);
+  step.taught = taughtVelocity(step.distance_m, interval_m);
+  step.velocity = velocity(step, 1.0);
   window_.forgetBefore(step.distance_m, kKeepBehind_m);
   return step;
 }
@@ -91,12 +92,19 @@ void RepeatSession::correctDistance(const NavigationStep& step, double interval_
   }
 }
 
-Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_m) const {
+Velocity RepeatSession::taughtVelocity(double distance_m, double interval_m) const {
   // The command holds until the next image: the velocity taught half an image's way ahead is its best mean. Looked up at
   // the image itself, every curve would be entered that much too late.
   const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
-  return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
-               focal_length_px_, steering_);
+  return profile_.travellingAt(distance_m + preview_m);
+}
+
+Velocity RepeatSession::velocity(const NavigationStep& step, double speed_factor) const {
+  if (!(speed_factor > 0.0)) {
+    return {};
+  }
+  const Velocity slowed{step.taught.forward * speed_factor, step.taught.angular * speed_factor, step.taught.flipper};
+  return steer(slowed, step.registration.result.displacement_px, focal_length_px_, steering_);
 }
 
 Observation observationOf(const NavigationStep& step) {

@@ -6,83 +6,15 @@ import shutil
 import sys
 import unittest
 
-import actionlib
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
-from perennial_nav.msg import (
-    NavigationState,
-    Registration,
-    RepeatAction,
-    RepeatGoal,
-    TeachAction,
-    TeachGoal,
-)
+from perennial_nav.msg import NavigationState, TeachGoal
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from fake_robot import FakeRobot, wait_until  # noqa: E402
+from fake_robot import wait_until  # noqa: E402
+from stack import BOTH, LENGTH_M, Stack  # noqa: E402
 
-LENGTH_M = 8.0
-BOTH = ["teach_recorder", "repeat_navigator"]
 FOLDER = ""  # of the maps; from the command line
-
-
-class Stack:
-    """The nodes' side of the tests, shared: starting nodes takes longer than the tests."""
-
-    def __init__(self):
-        self.robot = FakeRobot()
-        self.registrations, self.states = [], []
-        rospy.Subscriber("registration", Registration, self.registrations.append, queue_size=1000)
-        rospy.Subscriber("navigation_state", NavigationState, self.states.append, queue_size=1000)
-        self.teach = actionlib.SimpleActionClient("teach", TeachAction)
-        self.repeat = actionlib.SimpleActionClient("repeat", RepeatAction)
-        self.robot.connect(nodes=2)
-        wait_until(lambda: self.teach.wait_for_server(rospy.Duration(0.01)) or self.tick(), "teach")
-        wait_until(lambda: self.repeat.wait_for_server(rospy.Duration(0.01)) or self.tick(), "repeat")
-
-    def tick(self):
-        self.robot.tick(0.1)
-        return False
-
-    @staticmethod
-    def done(client):
-        return client.simple_state == actionlib.SimpleGoalState.DONE
-
-    def start(self, client, goal):
-        client.send_goal(goal)
-        wait_until(
-            lambda: self.done(client) or client.get_state() == GoalStatus.ACTIVE, "the goal to be taken up"
-        )
-
-    def result(self, client):
-        wait_until(lambda: self.done(client), "the result")
-        return client.get_result()
-
-    def teach_path(self, name, overwrite=False):
-        robot = self.robot
-        robot.restart()
-        self.start(self.teach, TeachGoal(map_name=name, overwrite=overwrite))
-        if self.done(self.teach):
-            return self.result(self.teach)
-        robot.speed = 0.5
-        robot.x -= robot.speed * 0.1  # the first image is taken at 0
-        while robot.x < LENGTH_M - 1e-6:
-            robot.step(BOTH)
-        self.teach.cancel_goal()
-        return self.result(self.teach)
-
-    def begin_repeat(self, name, **goal):
-        self.robot.restart(goal.get("start_distance_m", 0.0))
-        del self.registrations[:]
-        self.start(self.repeat, RepeatGoal(map_name=name, **goal))
-
-    def drive(self, until):
-        for _ in range(1000):
-            if self.done(self.repeat) or until():
-                return
-            self.robot.step(BOTH)
-        raise AssertionError("the robot drove on and on")
 
 
 class Faults(unittest.TestCase):
@@ -94,9 +26,8 @@ class Faults(unittest.TestCase):
         assert result.success, result.message
 
     def tearDown(self):
-        self.stack.repeat.cancel_all_goals()
-        self.stack.teach.cancel_all_goals()
-        wait_until(lambda: self.stack.done(self.stack.repeat), "the end of the goal")
+        self.stack.cancel(self.stack.repeat)
+        self.stack.cancel(self.stack.teach)
 
     def repeated(self, name="path", **goal):
         self.stack.begin_repeat(name, **goal)
@@ -137,7 +68,7 @@ class Faults(unittest.TestCase):
     def test_turns_back_to_the_path(self):
         self.stack.begin_repeat("path")
         self.robot.left_px = 20  # turned left, the robot must turn right
-        self.stack.drive(lambda: self.robot.x > 2.0)
+        self.stack.drive(lambda: self.robot.x > 1.5)
         self.assertLess(self.robot.command().angular.z, -0.01)
         self.assertAlmostEqual(self.stack.registrations[-1].displacement_px, -20.0, delta=1.5)
 

@@ -34,7 +34,8 @@ struct NavigationStep {
   std::vector<std::uint32_t> positions; ///< of the features registered: position in the stored local map
   ActiveRegistration registration;
   FeatureSet view;
-  Velocity velocity;                    ///< to send to the robot
+  Velocity taught;                      ///< by the profile, until the next image
+  Velocity velocity;                    ///< to send to the robot, at the taught speed
 };
 
 /// Follows a taught path: from an image and the travelled distance to a velocity. What the repeat navigator runs, and
@@ -56,6 +57,9 @@ class RepeatSession {
   bool atEnd(double travelled_m) const { return distance(travelled_m) >= length_m_; }
   double length() const { return length_m_; }
 
+  /// The robot's place along the path changes by this; for what the odometer does not know, as a person driving it back.
+  void shift(double distance_m) { start_m_ += distance_m; }
+
   void add(ActiveMap map) { window_.add(std::move(map)); }
   /// Whether the local map for this place has come.
   bool ready(double travelled_m) const { return window_.nearest(distance(travelled_m)) != nullptr; }
@@ -66,6 +70,10 @@ class RepeatSession {
   /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
 
+  /// The velocity to send at this share of the taught speed: the way is the same, the turns that correct it are kept. At 0 the
+  /// robot stands.
+  Velocity velocity(const NavigationStep& step, double speed_factor) const;
+
   /// Steering and registration may change on the way; a camera's focal length may become known.
   void setSteering(const SteeringSettings& steering) { steering_ = steering; }
   void setRegistration(const RegistrationSettings& settings) { registration_ = HistogramRegistration(settings); }
@@ -73,8 +81,8 @@ class RepeatSession {
 
  private:
   void correctDistance(const NavigationStep& step, double interval_m);
-  /// Velocity to send until the next image, `interval_m` after the last one.
-  Velocity velocityFor(const NavigationStep& step, double interval_m) const;
+  /// Taught velocity until the next image, `interval_m` after the last one.
+  Velocity taughtVelocity(double distance_m, double interval_m) const;
 
   MapMetadata map_;
   PathProfile profile_;

@@ -11,14 +11,12 @@ struct SteeringSettings {
   double gain_per_rad = 2.0;     ///< turn rate per radian of displacement, 1/s; used when the focal length is known
   double gain_per_px = 0.002;    ///< turn rate per pixel of displacement, rad/(s px); used when it is not
   double max_correction = 0.5;   ///< largest turn rate that a displacement may ask for, rad/s
-  double max_forward = 1.5;      ///< largest forward and backward velocity sent, m/s
-  double max_angular = 1.5;      ///< largest turn rate sent, rad/s
 
   /// Keys as the members are called. Throws ParameterError.
   static SteeringSettings load(ParameterReader& reader);
 };
 
-/// The velocity to send: the taught one, plus a turn rate proportional to the displacement, within the limits
+/// The velocity to ask for: the taught one, plus a turn rate proportional to the displacement, within its limit
 /// (Krajnik et al., "Navigation without localisation", IROS 2018, eq. 2). A positive displacement turns left.
 ///
 /// `focal_length_px`: horizontal focal length, px, positive; none when the camera is not calibrated.
