@@ -27,9 +27,13 @@ open_workspace() {
   mkdir -p "$workspace" 2>/dev/null && [[ -w $workspace ]] ||
     die "cannot write to $workspace (built by another user?): remove it, or set PERENNIAL_WORKSPACE to another folder"
   workspace=$(cd "$workspace" && pwd -P)
-  # ROS and matplotlib read their folders from the environment; nothing is written to the home folder.
-  export ROS_HOME=$workspace/ros ROS_LOG_DIR=$workspace/ros/log MPLCONFIGDIR=$workspace/matplotlib
+}
+
+# To be called before anything of ROS is run: logs and caches go to the workspace, nothing to the home folder.
+keep_home_clean() {
+  export ROS_HOME=$workspace/ros ROS_LOG_DIR=$workspace/ros/log
+  export XDG_CACHE_HOME=$workspace/cache XDG_CONFIG_HOME=$workspace/config
+  mkdir -p "$ROS_LOG_DIR"
   # Whatever this machine is called and whatever that name resolves to.
   export ROS_IP=127.0.0.1
-  mkdir -p "$ROS_LOG_DIR"
 }

@@ -10,6 +10,9 @@
 namespace perennial {
 namespace {
 
+/// Sums of steps that meet the interval exactly may fall short of it by rounding.
+constexpr double kRounding_m = 1e-6;
+
 double inSteps(double value, double step) { return step > 0.0 ? std::round(value / step) * step : value; }
 
 std::string imageKind(int width, int height, const std::string& encoding) {
@@ -63,7 +66,7 @@ bool TeachSession::addImage(double stamp_s, double travelled_m, const cv::Mat& i
   }
   requireSameImage(image, encoding);
   const double distance_m = distance(travelled_m);
-  if (distance_m < next_map_m_) {
+  if (distance_m < next_map_m_ - kRounding_m) {
     return false;
   }
   LocalMap map;
@@ -79,7 +82,7 @@ bool TeachSession::addImage(double stamp_s, double travelled_m, const cv::Mat& i
   newest_features_ = features.size();
   all_features_ += features.size();
   // On a grid, so that the interval is kept on average although images come when they come.
-  next_map_m_ = (std::floor(distance_m / settings_.map_interval_m + 1e-9) + 1.0) * settings_.map_interval_m;
+  next_map_m_ = (std::floor((distance_m + kRounding_m) / settings_.map_interval_m) + 1.0) * settings_.map_interval_m;
   return true;
 }
 

@@ -52,7 +52,9 @@ class TeachRepeat : public ::testing::Test {
 
   /// One traversal with the camera turned left by `left_px`; returns its steps.
   std::vector<NavigationStep> repeat(MapManager& manager, int left_px, double start_m = 0.0) {
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), {});
+    RepeatSettings settings;
+    settings.along_path.enabled = false;  // all views of 2 m are alike here: they say nothing about where they were taken
+    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings);
     session.beginTraversal(start_m);
     manager.beginTraversal(1000.0);
     std::vector<NavigationStep> steps;

@@ -138,7 +138,9 @@ class ClosedLoop : public ::testing::Test {
 };
 
 TEST_F(ClosedLoop, convergesFromBesideThePath) {
-  park::ParkSimulation park({}, {});
+  park::ParkSettings settings;
+  settings.image_rate_hz = 5;  // what a slow computer manages; the demo runs at 15
+  park::ParkSimulation park(settings, {});
   const TeachSummary taught = teach(park);
   EXPECT_GT(taught.distance_m, 30.0);
   park.place(0.4, 6.0 * kDegree);
