@@ -15,7 +15,7 @@ in order of time and lets the map learn from it. Writes errors.csv, lives.csv an
 to a folder of DIR for each run. Runs that are complete already are not repeated.
 
   --set KEY=VALUE   a parameter of the strategy, or of a group: registration/ratio, extraction/features,
-                    map_manager/min_inliers_for_update
+                    map_manager/min_inliers_for_update, map_manager/min_confidence_for_update
   --sweep FILE      runs a grid of strategies and parameters
   --teach NAME      traversal that teaches instead of the first
   --from NAME, --to NAME   first and last traversal to register
