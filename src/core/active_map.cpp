@@ -22,7 +22,7 @@ ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stam
   return active;
 }
 
-ActiveRegistration registerView(const HistogramRegistration& registration, const ActiveMap& map,
+ActiveRegistration registerView(const Registration& registration, const ActiveMap& map,
                                 const FeatureSet& view) {
   ActiveRegistration best;
   for (std::size_t k = 0; k < map.alternatives.size(); ++k) {

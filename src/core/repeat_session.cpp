@@ -22,7 +22,7 @@ RepeatSession::RepeatSession(const MapMetadata& map, const PathProfile& profile,
       local_maps_(local_maps),
       length_m_(map.length_m),
       extractor_(settings.extraction),
-      registration_(settings.registration),
+      registration_(makeRegistration(settings.registration)),
       steering_(settings.steering),
       along_path_(settings.along_path) {
   requireSameExtraction(map, settings.extraction.describe());
@@ -64,7 +64,7 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   step.local_map = map->index;
   step.local_map_distance_m = map->distance_m;
   step.view = extractor_.extract(image);
-  step.registration = registerView(registration_, *map, step.view);
+  step.registration = registerView(*registration_, *map, step.view);
   step.positions = map->alternatives[step.registration.alternative].positions;
   correctDistance(step, interval_m);
   step.velocity = velocityFor(step, interval_m);
@@ -82,7 +82,7 @@ void RepeatSession::correctDistance(const NavigationStep& step, double interval_
     return;
   }
   const auto evidence = [&](const ActiveMap& map) {
-    return PlaceEvidence{map.distance_m, registerView(registration_, map, step.view).result.inliers};
+    return PlaceEvidence{map.distance_m, registerView(*registration_, map, step.view).result.inliers};
   };
   const auto seen_m = placeOfView(evidence(*before), {step.local_map_distance_m, step.registration.result.inliers},
                                   evidence(*after));
@@ -95,8 +95,10 @@ Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_
   // The command holds until the next image: the velocity taught half an image's way ahead is its best mean. Looked up at
   // the image itself, every curve would be entered that much too late.
   const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
-  return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
-               focal_length_px_, steering_);
+  const Velocity taught = profile_.travellingAt(step.distance_m + preview_m);
+  const Velocity velocity =
+      steer(taught, step.registration.result.displacement_px, focal_length_px_, steering_);
+  return slowed(velocity, speedShare(step.registration.result.confidence, steering_));
 }
 
 Observation observationOf(const NavigationStep& step) {

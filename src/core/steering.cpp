@@ -19,7 +19,29 @@ SteeringSettings SteeringSettings::load(ParameterReader& reader) {
   settings.max_correction = reader.real("max_correction", settings.max_correction, 0.0, 10.0);
   settings.max_forward = reader.real("max_forward", settings.max_forward, 0.0, 20.0);
   settings.max_angular = reader.real("max_angular", settings.max_angular, 0.0, 20.0);
+  settings.slow_below_confidence =
+      reader.real("slow_below_confidence", settings.slow_below_confidence, 0.0, 1.0);
+  settings.stop_below_confidence =
+      reader.real("stop_below_confidence", settings.stop_below_confidence, 0.0, 1.0);
   return settings;
+}
+
+double speedShare(double confidence, const SteeringSettings& settings) {
+  const double stop = settings.stop_below_confidence;
+  if (stop > 0.0 && confidence <= stop) {
+    return 0.0;
+  }
+  if (confidence >= settings.slow_below_confidence) {
+    return 1.0;
+  }
+  return (confidence - stop) / (settings.slow_below_confidence - stop);
+}
+
+Velocity slowed(const Velocity& velocity, double share) {
+  Velocity result = velocity;
+  result.forward *= share;
+  result.angular *= share;
+  return result;
 }
 
 Velocity steer(const Velocity& taught, std::optional<double> displacement_px, std::optional<double> focal_length_px,

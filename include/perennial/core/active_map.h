@@ -35,7 +35,7 @@ struct ActiveRegistration {
 };
 
 /// Registers a view against every alternative; the one with the most inliers wins, of equal ones the first.
-ActiveRegistration registerView(const HistogramRegistration& registration, const ActiveMap& map,
+ActiveRegistration registerView(const Registration& registration, const ActiveMap& map,
                                 const FeatureSet& view);
 
 /// The local maps around the robot, as they were sent ahead. Not thread-safe.

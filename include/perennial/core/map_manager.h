@@ -17,6 +17,7 @@ struct MapManagerSettings {
   double lookahead_m = 5.0;        ///< local maps are handed out this far ahead of the robot
   double lookbehind_m = 1.0;       ///< and this far behind it
   int min_inliers_for_update = 5;  ///< a registration with fewer inliers teaches nothing
+  double min_confidence_for_update = 0.0;  ///< neither does one of lower confidence
 
   /// Keys as the members are called. Throws ParameterError.
   static MapManagerSettings load(ParameterReader& reader);

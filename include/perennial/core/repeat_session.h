@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -68,7 +69,7 @@ class RepeatSession {
 
   /// Steering and registration may change on the way; a camera's focal length may become known.
   void setSteering(const SteeringSettings& steering) { steering_ = steering; }
-  void setRegistration(const RegistrationSettings& settings) { registration_ = HistogramRegistration(settings); }
+  void setRegistration(const RegistrationSettings& settings) { registration_ = makeRegistration(settings); }
   void setFocalLength(std::optional<double> focal_length_px) { focal_length_px_ = focal_length_px; }
 
  private:
@@ -81,7 +82,7 @@ class RepeatSession {
   std::size_t local_maps_;
   double length_m_;
   FeatureExtractor extractor_;
-  HistogramRegistration registration_;
+  std::unique_ptr<Registration> registration_;
   SteeringSettings steering_;
   AlongPathCorrection along_path_;
   std::optional<double> focal_length_px_;
