@@ -18,6 +18,16 @@ SteeringSettings SteeringSettings::load(ParameterReader& reader) {
   return settings;
 }
 
+Velocity slowed(const Velocity& velocity, double share) {
+  if (!(share > 0.0)) {
+    return {};
+  }
+  Velocity result = velocity;
+  result.forward *= share;
+  result.angular *= share;
+  return result;
+}
+
 Velocity steer(const Velocity& taught, std::optional<double> displacement_px, std::optional<double> focal_length_px,
                const SteeringSettings& settings) {
   double correction = 0.0;

@@ -90,8 +90,8 @@ void FeatureLives::add(const FeatureLives& other) {
 }
 
 PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strategy,
-                              const RegistrationSettings& registration_settings, int min_inliers_for_update) {
-  const HistogramRegistration registration(registration_settings);
+                              const RegistrationSettings& registration_settings, const LearningGate& gate) {
+  const auto registration = makeRegistration(registration_settings);
   LocalMap map = teach(place);
   takeOver(map, strategy);
   LifeRecorder lives(map);
@@ -99,7 +99,7 @@ PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strat
   for (const ReplayView& view : place.views) {
     const double start_ms = threadMilliseconds();
     const ActiveMap active = activate(strategy, map, view.stamp_s);
-    ActiveRegistration registered = registerView(registration, active, *view.features);
+    ActiveRegistration registered = registerView(*registration, active, *view.features);
     const RegistrationResult& found = registered.result;
     result.steps.push_back(
         {found.displacement_px, found.inliers, found.matches, map.size(), threadMilliseconds() - start_ms});
@@ -111,7 +111,7 @@ PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strat
     observation.view = *view.features;
     observation.stamp_s = view.stamp_s;
     observation.distance_m = place.distance_m;
-    if (teaches(observation, min_inliers_for_update)) {
+    if (teaches(observation, gate)) {
       learn(map, strategy, observation);
     }
     lives.record(map, result.steps.size());

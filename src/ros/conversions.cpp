@@ -107,6 +107,8 @@ perennial_nav::Registration toMessage(const NavigationStep& step) {
   message.distance_m = step.distance_m;
   message.has_displacement = result.displacement_px.has_value();
   message.displacement_px = result.displacement_px.value_or(0.0);
+  message.confidence = result.confidence;
+  message.uncertainty_px = result.uncertainty_px;
   message.inliers = result.inliers;
   message.matches = result.matches;
   message.bin_width_px = result.histogram.bin_width_px;
@@ -124,7 +126,8 @@ perennial_nav::Registration toMessage(const NavigationStep& step) {
 Observation observationFromMessage(const perennial_nav::Registration& message) {
   const std::size_t n = message.positions.size();
   require(message.states.size() == n && message.partners.size() == n, "the arrays of a registration differ in length");
-  require(std::isfinite(message.displacement_px) && std::isfinite(message.distance_m),
+  require(std::isfinite(message.displacement_px) && std::isfinite(message.distance_m) &&
+              std::isfinite(message.confidence) && std::isfinite(message.uncertainty_px),
           "a registration holds a value that is not finite");
   Observation observation;
   observation.view = fromMessage(message.view);
@@ -135,6 +138,8 @@ Observation observationFromMessage(const perennial_nav::Registration& message) {
   if (message.has_displacement) {
     result.displacement_px = message.displacement_px;
   }
+  result.confidence = message.confidence;
+  result.uncertainty_px = message.uncertainty_px;
   result.inliers = message.inliers;
   result.matches = message.matches;
   result.histogram.bin_width_px = message.bin_width_px;

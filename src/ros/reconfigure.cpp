@@ -7,13 +7,18 @@ void toConfig(const ExtractionSettings& settings, perennial_nav::ExtractionConfi
   config.octaves = settings.octaves;
   config.layers = settings.layers;
   config.min_response = settings.min_response;
+  config.half_resolution = settings.half_resolution;
+  config.bucket_columns = settings.bucket_columns;
+  config.bucket_rows = settings.bucket_rows;
 }
 
 void toConfig(const RegistrationSettings& settings, perennial_nav::RegistrationConfig& config) {
+  config.method = nameOf(settings.method);
   config.ratio = settings.ratio;
   config.max_vertical_px = settings.max_vertical_px;
   config.bin_width_px = settings.bin_width_px;
   config.min_inliers = settings.min_inliers;
+  config.min_confidence = settings.min_confidence;
 }
 
 void toConfig(const SteeringSettings& settings, perennial_nav::SteeringConfig& config) {
@@ -28,15 +33,20 @@ ExtractionSettings fromConfig(const perennial_nav::ExtractionConfig& config) {
   settings.octaves = config.octaves;
   settings.layers = config.layers;
   settings.min_response = config.min_response;
+  settings.half_resolution = config.half_resolution;
+  settings.bucket_columns = config.bucket_columns;
+  settings.bucket_rows = config.bucket_rows;
   return settings;
 }
 
 RegistrationSettings fromConfig(const perennial_nav::RegistrationConfig& config) {
   RegistrationSettings settings;
+  settings.method = registrationMethod(config.method).value_or(settings.method);
   settings.ratio = config.ratio;
   settings.max_vertical_px = config.max_vertical_px;
   settings.bin_width_px = config.bin_width_px;
   settings.min_inliers = config.min_inliers;
+  settings.min_confidence = config.min_confidence;
   return settings;
 }
 

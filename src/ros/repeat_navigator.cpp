@@ -275,12 +275,12 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
     return;
   }
   run_->session->setFocalLength(focalLength(grey.cols));
-  const NavigationStep step = run_->session->step(image->header.stamp.toSec(), travelled_m, grey);
-  drive(step, image);
+  run_->session->stepInto(image->header.stamp.toSec(), travelled_m, grey, step_);
+  drive(step_, image);
   if (!run_) {
     return;
   }
-  report(step, image);
+  report(step_, image);
   if (run_->atEnd()) {
     completeTraversal(image->header.stamp);
   } else {
@@ -300,12 +300,12 @@ void RepeatNavigator::followHand(double travelled_m) {
 void RepeatNavigator::drive(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
   const ros::Time& stamp = image->header.stamp;
   const NavigationStatus status =
-      supervisor_.see(stamp.toSec(), run_->travelled_m, sightOf(step.registration.result, settings_.repeat.registration.min_inliers), gate_.permit());
+      supervisor_.see(stamp.toSec(), run_->travelled_m, sightOf(step.registration.result), gate_.permit());
   if (status.mode == NavigationMode::kFailed) {
     fail(status.reason);
   } else if (run_->number == run_->goal.traversals && run_->atEnd()) {
     gate_.stop();
-  } else if (!gate_.drive(run_->session->velocity(step, status.speed_factor), stamp)) {
+  } else if (!gate_.drive(slowed(step.velocity, status.speed_factor), stamp)) {
     ROS_WARN_THROTTLE(1.0, "an image came too late to drive by");
   }
 }

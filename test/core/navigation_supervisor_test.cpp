@@ -244,21 +244,13 @@ TEST(NavigationMode, hasNamesOfTheirOwn) {
   EXPECT_STREQ(nameOf(Mode::kFailed), "failed");
 }
 
-TEST(Sight, growsWithTheAgreeingPairs) {
+TEST(Sight, isWhatTheRegistrationSays) {
   RegistrationResult result;
-  result.inliers = 4;
-  EXPECT_FALSE(sightOf(result, 5).recognised);
+  result.confidence = 0.3;
+  EXPECT_FALSE(sightOf(result).recognised);
   result.displacement_px = 1.0;
-  double last = -1.0;
-  for (const int inliers : {5, 10, 20, 39}) {
-    result.inliers = inliers;
-    const Sight sight = sightOf(result, 5);
-    EXPECT_TRUE(sight.recognised);
-    EXPECT_GT(sight.confidence, last);
-    last = sight.confidence;
-  }
-  result.inliers = 1000;
-  EXPECT_EQ(sightOf(result, 5).confidence, 1.0);
+  EXPECT_TRUE(sightOf(result).recognised);
+  EXPECT_EQ(sightOf(result).confidence, 0.3);
 }
 
 TEST(SupervisorSettings, refusesWhatMakesNoSense) {

@@ -80,6 +80,11 @@ TEST(Steering, limitsItsCorrectionAndNeverGivesNan) {
   EXPECT_TRUE(std::isfinite(velocity.forward) && std::isfinite(velocity.angular) && std::isfinite(velocity.flipper));
 }
 
+TEST(Steering, slowedKeepsTheCurve) {
+  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.5), (Velocity{0.5, 0.2, 0.1})) << "flippers do not move the robot along";
+  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.0), Velocity{});
+}
+
 OdometrySample at(double stamp_s, double x_m, double y_m = 0.0) { return {stamp_s, x_m, y_m, 0.0, 0.0}; }
 
 TEST(Odometer, sumsTheLengthsOfSteps) {

@@ -120,6 +120,17 @@ TEST_F(TeachRepeat, learnsOncePerLocalMapAndInTheMapsFrame) {
   EXPECT_EQ(manager.file().traversals().size(), 2U);
 }
 
+TEST_F(TeachRepeat, learnsOnlyFromWhatItIsSureOf) {
+  teach();
+  MapManagerSettings settings;
+  settings.gate.min_confidence = 1.0;  // which no estimate reaches
+  MapManager manager(MapFile(file()), std::make_shared<strategies::LatestMap>(), settings);
+  for (const NavigationStep& step : repeat(manager, 30)) {
+    EXPECT_GT(step.registration.result.confidence, 0.9);
+  }
+  EXPECT_EQ(manager.endTraversal(true, 2000.0), 0U);
+}
+
 TEST_F(TeachRepeat, aForgottenTraversalChangesNothing) {
   teach();
   const LocalMap before = MapFile(file()).read(25);

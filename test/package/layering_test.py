@@ -11,7 +11,7 @@ CORE = ['perennial/core/', 'core/']
 # Folders, and beginnings of what they may include besides standard headers, which have no folder in their names.
 ROOMS = {
     'include/perennial/core': ['perennial/core/', 'opencv2/core'],
-    'src/core': CORE + ['opencv2/', 'boost/crc.hpp', 'sys/'],
+    'src/core': CORE + ['opencv2/', 'boost/crc.hpp', 'hwy/', 'sys/'],
     'include/perennial/strategies': ['perennial/core/', 'perennial/strategies/', 'opencv2/core'],
     'src/strategies': CORE + ['perennial/strategies/', 'opencv2/', 'pluginlib/class_list_macros.hpp'],
     'include/perennial/park': ['perennial/core/', 'perennial/park/', 'opencv2/core'],

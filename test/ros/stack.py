@@ -29,19 +29,20 @@ class Stack:
 
     @staticmethod
     def done(client):
-        return client.simple_state == actionlib.SimpleGoalState.DONE
+        # The client's simple state may be overtaken: its threads set it in any order.
+        return client.gh is None or client.gh.get_comm_state() == actionlib.CommState.DONE
+
+    def end(self, client):
+        """Ends a goal, by its name: cancelling all goals may arrive late, and end the next one."""
+        if not self.done(client):
+            client.cancel_goal()
+        wait_until(lambda: self.done(client), "the end of the goal")
 
     def start(self, client, goal):
         client.send_goal(goal)
         wait_until(
             lambda: self.done(client) or client.get_state() == GoalStatus.ACTIVE, "the goal to be taken up"
         )
-
-    def cancel(self, client):
-        """Only a goal that is being served: cancelling after its end might hit the next one."""
-        if client.gh is not None and not self.done(client):
-            client.cancel_goal()
-            wait_until(lambda: self.done(client), "the end of the goal")
 
     def result(self, client):
         wait_until(lambda: self.done(client), "the result")

@@ -84,7 +84,7 @@ class Stops(unittest.TestCase):
         self.assert_state(NavigationState.REPEATING, "by sight")
 
     def tearDown(self):
-        self.stack.cancel(self.stack.repeat)
+        self.stack.end(self.stack.repeat)
 
     def steps(self, number):
         for _ in range(number):

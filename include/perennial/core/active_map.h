@@ -35,8 +35,18 @@ struct ActiveRegistration {
 };
 
 /// Registers a view against every alternative; the one with the most inliers wins, of equal ones the first.
-ActiveRegistration registerView(const HistogramRegistration& registration, const ActiveMap& map,
+ActiveRegistration registerView(const Registration& registration, const ActiveMap& map,
                                 const FeatureSet& view);
+
+/// Memory that registrations against local maps work in, see RegistrationWorkspace.
+struct ActiveRegistrationWorkspace {
+  RegistrationWorkspace registration;
+  RegistrationResult candidate;
+};
+
+/// The same into a result whose memory is used again.
+void registerInto(const Registration& registration, const ActiveMap& map, const FeatureSet& view,
+                  ActiveRegistrationWorkspace& workspace, ActiveRegistration& result);
 
 /// The local maps around the robot, as they were sent ahead. Not thread-safe.
 class ActiveMapWindow {

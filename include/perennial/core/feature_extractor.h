@@ -19,11 +19,19 @@ struct ExtractionSettings {
   /// white noise with a deviation of 2 grey levels, so that a dark image does not fill up with noise; the weakest of
   /// 500 features of an image in daylight has some 100 times more.
   double min_response = 3e-6;
+  /// Extract from the image at half its width and height (each pixel the mean of four). Coordinates and scales are those
+  /// of the full image all the same; a descriptor covers twice the width.
+  bool half_resolution = false;
+  /// With more than one bucket the N features are spread over a grid of buckets: the strongest of every bucket first,
+  /// then the second strongest of every one, and so on. 1 x 1: the strongest N wherever they are.
+  int bucket_columns = 1;
+  int bucket_rows = 1;
 
   /// Keys as the members are called. Throws ParameterError.
   static ExtractionSettings load(ParameterReader& reader);
 
-  /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...".
+  /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...". Resolution
+  /// and buckets are named only when they are not the default, so that maps from before they existed stay usable.
   std::string describe() const;
 };
 
@@ -42,6 +50,8 @@ class FeatureExtractor {
 
   /// `image`: CV_8UC1 of any size; one too small for a single feature gives none. Throws ImageError for another type.
   FeatureSet extract(const cv::Mat& image);
+  /// The same into a set whose memory is used again: after the first image of a size nothing is allocated.
+  void extractInto(const cv::Mat& image, FeatureSet& features);
 
   const ExtractionSettings& settings() const;
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -34,7 +35,6 @@ struct NavigationStep {
   std::vector<std::uint32_t> positions; ///< of the features registered: position in the stored local map
   ActiveRegistration registration;
   FeatureSet view;
-  Velocity taught;                      ///< by the profile, until the next image
   Velocity velocity;                    ///< to send to the robot, at the taught speed
 };
 
@@ -69,32 +69,33 @@ class RepeatSession {
 
   /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
-
-  /// The velocity to send at this share of the taught speed: the way is the same, the turns that correct it are kept. At 0 the
-  /// robot stands.
-  Velocity velocity(const NavigationStep& step, double speed_factor) const;
+  /// The same into a step whose memory is used again: once it has served for as many features, nothing is allocated.
+  void stepInto(double stamp_s, double travelled_m, const cv::Mat& image, NavigationStep& step);
 
   /// Steering and registration may change on the way; a camera's focal length may become known.
   void setSteering(const SteeringSettings& steering) { steering_ = steering; }
-  void setRegistration(const RegistrationSettings& settings) { registration_ = HistogramRegistration(settings); }
+  void setRegistration(const RegistrationSettings& settings) { registration_ = makeRegistration(settings); }
   void setFocalLength(std::optional<double> focal_length_px) { focal_length_px_ = focal_length_px; }
 
  private:
   void correctDistance(const NavigationStep& step, double interval_m);
-  /// Taught velocity until the next image, `interval_m` after the last one.
-  Velocity taughtVelocity(double distance_m, double interval_m) const;
+  PlaceEvidence evidence(const ActiveMap& map, const FeatureSet& view);
+  /// Velocity to send until the next image, `interval_m` after the last one.
+  Velocity velocityFor(const NavigationStep& step, double interval_m) const;
 
   MapMetadata map_;
   PathProfile profile_;
   std::size_t local_maps_;
   double length_m_;
   FeatureExtractor extractor_;
-  HistogramRegistration registration_;
+  std::unique_ptr<Registration> registration_;
   SteeringSettings steering_;
   AlongPathCorrection along_path_;
   std::optional<double> focal_length_px_;
 
   ActiveMapWindow window_;
+  ActiveRegistrationWorkspace workspace_;
+  ActiveRegistration neighbour_;  ///< of the local map before or after the robot's
   double start_m_ = 0.0;
   std::optional<double> start_travelled_m_;
   std::optional<double> previous_travelled_m_;

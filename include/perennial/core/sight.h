@@ -7,11 +7,11 @@ namespace perennial {
 /// What an image was worth for driving.
 struct Sight {
   bool recognised = false;  ///< whether there is a displacement
-  double confidence = 0.0;  ///< of it, 0 to 1
+  double confidence = 0.0;  ///< probability that it is right, 0 to 1
 };
 
-/// Confidence grows with the number of pairs that agree, from 0 with none to 1 with `kSureInliers` times the fewest that give a
-/// displacement.
-Sight sightOf(const RegistrationResult& result, int min_inliers);
+inline Sight sightOf(const RegistrationResult& result) {
+  return {result.displacement_px.has_value(), result.confidence};
+}
 
 }  // namespace perennial

@@ -16,6 +16,10 @@ struct SteeringSettings {
   static SteeringSettings load(ParameterReader& reader);
 };
 
+/// A velocity slowed down to a share of it along the same curve; flippers do not move the robot along and keep theirs. Zero at
+/// a share of 0.
+Velocity slowed(const Velocity& velocity, double share);
+
 /// The velocity to ask for: the taught one, plus a turn rate proportional to the displacement, within its limit
 /// (Krajnik et al., "Navigation without localisation", IROS 2018, eq. 2). A positive displacement turns left.
 ///

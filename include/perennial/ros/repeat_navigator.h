@@ -82,6 +82,7 @@ class RepeatNavigator {
   CommandGate gate_;
   SafetyInputs inputs_;
   std::unique_ptr<RepeatRun> run_;
+  NavigationStep step_;  ///< the newest one; its memory is used again
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::size_t ignored_maps_ = 0;
 

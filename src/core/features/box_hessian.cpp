@@ -3,9 +3,6 @@
 namespace perennial {
 namespace {
 
-/// Weight of Dxy that balances the error of the box approximation (Bay et al., eq. 3), squared.
-constexpr float kMixedWeight = 0.9F * 0.9F;
-
 float signedSum(std::uint32_t modular) { return static_cast<float>(static_cast<std::int32_t>(modular)); }
 
 /// One response, from pointers into the differences at its centre column. Inlined into both loops below.
@@ -70,8 +67,7 @@ void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDiffere
 
 void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int step, int count,
                 float* __restrict responses) noexcept {
-  const float area = static_cast<float>(filter.size() * filter.size());
-  const Response response{filter.lobe, filter.half(), filter.lobe / 2, 1.0F / (255.0F * area)};
+  const Response response{filter.lobe, filter.half(), filter.lobe / 2, responseNorm(filter)};
   const std::uint32_t* const xx = differences.xx.data() + begin;
   const std::uint32_t* const yy = differences.yy.data() + begin;
   const std::uint32_t* const xy = differences.xy.data() + begin;

@@ -20,6 +20,14 @@ struct BoxFilter {
   int half() const { return size() / 2; }  ///< px needed on each side of the centre
 };
 
+/// Weight of Dxy that balances the error of the box approximation (Bay et al., eq. 3), squared.
+constexpr float kMixedWeight = 0.9F * 0.9F;
+
+/// What a filter's sums are multiplied by: one over its area and over 255.
+inline float responseNorm(const BoxFilter& filter) {
+  return 1.0F / (255.0F * static_cast<float>(filter.size() * filter.size()));
+}
+
 /// sigma of the Gaussian that a filter of this size (possibly between two filters, hence real) approximates,
 /// px.
 constexpr float scaleOfFilterSize(float size) { return 1.2F / 9.0F * size; }

@@ -1,5 +1,7 @@
 #include "core/features/brief_descriptor.h"
 
+#include "core/simd/kernels.h"
+
 namespace perennial {
 
 void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
@@ -17,10 +19,11 @@ void BriefDescriptor::prepare(const IntegralImage& integral) {
   }
   const auto stride = static_cast<std::size_t>(columns_);
   smoothed_.resize(stride * static_cast<std::size_t>(rows));
+  const auto box_sum_row = kernels().box_sum_row;
   constexpr int kHalf = kSmoothing / 2;
   for (int y = kHalf; y < rows - kHalf; ++y) {
     std::uint16_t* const sums = smoothed_.data() + static_cast<std::size_t>(y) * stride + kHalf;
-    boxSumRow(integral.row(y - kHalf), integral.row(y + kHalf + 1), kSmoothing, columns_ - 2 * kHalf, sums);
+    box_sum_row(integral.row(y - kHalf), integral.row(y + kHalf + 1), kSmoothing, columns_ - 2 * kHalf, sums);
   }
 }
 

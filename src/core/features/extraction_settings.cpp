@@ -33,12 +33,22 @@ ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
   settings.octaves = reader.integer("octaves", settings.octaves, 1, 6);
   settings.layers = reader.integer("layers", settings.layers, 1, 6);
   settings.min_response = reader.real("min_response", settings.min_response, 0.0, 1.0);
+  settings.half_resolution = reader.boolean("half_resolution", settings.half_resolution);
+  settings.bucket_columns = reader.integer("bucket_columns", settings.bucket_columns, 1, 100);
+  settings.bucket_rows = reader.integer("bucket_rows", settings.bucket_rows, 1, 100);
   return settings;
 }
 
 std::string ExtractionSettings::describe() const {
-  return "surf-brief/1 features=" + std::to_string(features) + " octaves=" + std::to_string(octaves) +
-         " layers=" + std::to_string(layers) + " min_response=" + exactText(min_response);
+  std::string text = "surf-brief/1 features=" + std::to_string(features) + " octaves=" + std::to_string(octaves) +
+                     " layers=" + std::to_string(layers) + " min_response=" + exactText(min_response);
+  if (half_resolution) {
+    text += " half_resolution=1";
+  }
+  if (bucket_columns * bucket_rows > 1) {
+    text += " buckets=" + std::to_string(bucket_columns) + "x" + std::to_string(bucket_rows);
+  }
+  return text;
 }
 
 }  // namespace perennial

@@ -19,13 +19,16 @@ struct ResponseLayer {
   int begin = 0;
   int columns_end = 0;
   int rows_end = 0;
+  int rows_held = 0;  ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
   std::vector<float> responses;
 
-  const float* row(int j) const {
-    return responses.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(columns);
-  }
-  float* row(int j) {
-    return responses.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(columns);
+  /// Row j, which must be among those held.
+  const float* row(int j) const { return responses.data() + offset(j); }
+  float* row(int j) { return responses.data() + offset(j); }
+
+ private:
+  std::size_t offset(int j) const {
+    return static_cast<std::size_t>(j % rows_held) * static_cast<std::size_t>(columns);
   }
 };
 
@@ -43,23 +46,57 @@ class HessianPyramid {
   /// Memory is kept and used again for images of the same size.
   void compute(const IntegralImage& integral);
 
+  /// The same, handing out rows as they come: visit(octave, j) is called when rows j - 1 .. j + 1 of all layers of the
+  /// octave are there, octave by octave, for all j but an octave's first and last. Of octave 0 only a few rows are held:
+  /// its responses never leave the processor's cache, which takes half the time of writing and reading them.
+  template <class Visit>
+  void stream(const IntegralImage& integral, Visit visit) {
+    fit(integral, kRowsStreamed);
+    for (int j = 0; j < rows_; ++j) {
+      computeRow(integral, j);
+      if (j > 1) {
+        visit(0, j - 1);
+      }
+    }
+    for (int octave = 1; octave < octaves_; ++octave) {
+      computeOctave(integral, octave, octave == 1);
+      for (int j = 1; j + 1 < layer(octave, 0).rows; ++j) {
+        visit(octave, j);
+      }
+    }
+  }
+
   int octaves() const { return octaves_; }
   int layersPerOctave() const { return layers_ + 2; }  ///< with the lowest and the highest
   const ResponseLayer& layer(int octave, int index) const { return pyramid_[position(octave, index)]; }
 
  private:
+  static constexpr int kRowsStreamed = 4;
+
   std::size_t position(int octave, int index) const {
     return static_cast<std::size_t>(octave * layersPerOctave() + index);
   }
-  void fit(const IntegralImage& integral);
-  void filter(const IntegralImage& integral, ResponseLayer& layer);
+  /// Which layer of the octave below has the same filter, or -1.
+  int sameBelow(int octave, int index) const {
+    const int same = 2 * index + 1;
+    return octave > 0 && same < layersPerOctave() ? same : -1;
+  }
+  /// `rows_held`: of octave 0's layers.
+  void fit(const IntegralImage& integral, int rows_held);
+  /// One row of octave 0, in all layers, and what octave 1 takes from it.
+  void computeRow(const IntegralImage& integral, int j);
+  /// `copied`: the layers that the octave below has too are filled already.
+  void computeOctave(const IntegralImage& integral, int octave, bool copied);
+  void filterRow(const IntegralImage& integral, ResponseLayer& layer, int j);
 
   int octaves_;
   int layers_;
   int columns_ = 0;  ///< of the image that the layers fit
   int rows_ = 0;
+  int rows_held_ = 0;
   std::vector<ResponseLayer> pyramid_;
   ColumnDifferences differences_;
+  std::vector<float> full_row_;  ///< responses at every pixel of a row, where only some are kept
 };
 
 }  // namespace perennial

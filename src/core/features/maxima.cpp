@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/simd/kernels.h"
+
 namespace perennial {
 namespace {
 
@@ -39,41 +41,18 @@ bool isMaximum(const Rows& below, const Rows& centre, const Rows& above, int i) 
          value >= greatestOfNine(below, i) && value > greatestOfNine(above, i);
 }
 
-/// Samples looked at together. Nearly all such blocks can be passed over at once.
-constexpr int kBlock = 16;
-
-/// False when none of the samples i..i+kBlock-1 exceeds the threshold and its four neighbours in the layer.
-/// Without a branch, so that it is vectorised.
-bool mayHoldMaximum(const Rows& rows, int i, float threshold) {
-  const float* const up = rows.up + i;
-  const float* const here = rows.here + i;
-  const float* const down = rows.down + i;
-  unsigned any = 0;
-  for (int k = 0; k < kBlock; ++k) {
-    const float value = here[k];
-    // One mask from the greatest neighbour on either side of the order, not a chain of && that would branch.
-    const float earlier = std::max(std::max(here[k - 1], up[k]), threshold);
-    const float later = std::max(here[k + 1], down[k]);
-    any |= static_cast<unsigned>(value >= earlier) & static_cast<unsigned>(value > later);
-  }
-  return any != 0;
-}
-
 void findInRow(const Triple& layers, float threshold, Maximum where, std::vector<Maximum>& maxima) {
   const Rows below(layers.below, where.j);
   const Rows centre(layers.centre, where.j);
   const Rows above(layers.above, where.j);
   const int end = layers.above.columns_end - 1;
-  for (int block = layers.above.begin + 1; block < end; block += kBlock) {
-    if (block + kBlock <= end && !mayHoldMaximum(centre, block, threshold)) {
-      continue;
-    }
-    for (int i = block; i < std::min(block + kBlock, end); ++i) {
-      if (centre.here[i] >= threshold && isMaximum(below, centre, above, i)) {
-        where.i = i;
-        where.response = centre.here[i];
-        maxima.push_back(where);
-      }
+  const auto next = kernels().next_peak;
+  for (int i = next(centre.up, centre.here, centre.down, layers.above.begin + 1, end, threshold); i < end;
+       i = next(centre.up, centre.here, centre.down, i + 1, end, threshold)) {
+    if (isMaximum(below, centre, above, i)) {
+      where.i = i;
+      where.response = centre.here[i];
+      maxima.push_back(where);
     }
   }
 }
@@ -114,14 +93,31 @@ struct Quadratic {
 
 }  // namespace
 
+int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) noexcept {
+  for (int i = begin; i < end; ++i) {
+    const float value = here[i];
+    if (value >= threshold && value >= here[i - 1] && value >= up[i] && value > here[i + 1] && value > down[i]) {
+      return i;
+    }
+  }
+  return std::max(begin, end);
+}
+
 void findMaxima(const HessianPyramid& pyramid, float threshold, std::vector<Maximum>& maxima) {
   for (int octave = 0; octave < pyramid.octaves(); ++octave) {
-    for (int index = 1; index + 1 < pyramid.layersPerOctave(); ++index) {
-      const Triple layers{pyramid.layer(octave, index - 1), pyramid.layer(octave, index),
-                          pyramid.layer(octave, index + 1)};
-      for (int j = layers.above.begin + 1; j < layers.above.rows_end - 1; ++j) {
-        findInRow(layers, threshold, {octave, index, 0, j, 0.0F}, maxima);
-      }
+    for (int j = 1; j + 1 < pyramid.layer(octave, 0).rows; ++j) {
+      findMaximaInRow(pyramid, octave, j, threshold, maxima);
+    }
+  }
+}
+
+void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float threshold,
+                     std::vector<Maximum>& maxima) {
+  for (int index = 1; index + 1 < pyramid.layersPerOctave(); ++index) {
+    const Triple layers{pyramid.layer(octave, index - 1), pyramid.layer(octave, index),
+                        pyramid.layer(octave, index + 1)};
+    if (j > layers.above.begin && j < layers.above.rows_end - 1) {
+      findInRow(layers, threshold, {octave, index, 0, j, 0.0F}, maxima);
     }
   }
 }

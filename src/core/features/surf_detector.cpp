@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 namespace perennial {
@@ -30,7 +31,11 @@ SurfDetector::SurfDetector(const ExtractionSettings& settings)
       pyramid_(settings.octaves, settings.layers) {}
 
 const std::vector<Keypoint>& SurfDetector::detect(const IntegralImage& integral, const PatchMargin& margin) {
-  pyramid_.compute(integral);
+  if (bucketed()) {
+    findCandidates(min_response_, integral, margin);
+    selectFromBuckets(integral);
+    return keypoints_;
+  }
   const auto wanted = static_cast<std::size_t>(settings_.features);
   while (true) {
     findCandidates(threshold_, integral, margin);
@@ -45,15 +50,17 @@ const std::vector<Keypoint>& SurfDetector::detect(const IntegralImage& integral,
 }
 
 void SurfDetector::findCandidates(float threshold, const IntegralImage& integral, const PatchMargin& margin) {
-  maxima_.clear();
   candidates_.clear();
-  findMaxima(pyramid_, threshold, maxima_);
-  for (const Maximum& maximum : maxima_) {
-    const std::optional<Keypoint> keypoint = refine(pyramid_, maximum);
-    if (keypoint && margin.fits(nearestPixel(*keypoint), integral.columns(), integral.rows())) {
-      candidates_.push_back({*keypoint, maximum.octave});
+  pyramid_.stream(integral, [&](int octave, int j) {
+    maxima_.clear();
+    findMaximaInRow(pyramid_, octave, j, threshold, maxima_);
+    for (const Maximum& maximum : maxima_) {
+      const std::optional<Keypoint> keypoint = refine(pyramid_, maximum);
+      if (keypoint && margin.fits(nearestPixel(*keypoint), integral.columns(), integral.rows())) {
+        candidates_.push_back({*keypoint, maximum.octave});
+      }
     }
-  }
+  });
   std::sort(candidates_.begin(), candidates_.end(), isBefore);
 }
 
@@ -65,6 +72,29 @@ void SurfDetector::selectStrongest(const IntegralImage& integral) {
     if (duplicates_.accept(candidates_[examined_])) {
       keypoints_.push_back(candidates_[examined_].keypoint);
     }
+  }
+}
+
+void SurfDetector::selectFromBuckets(const IntegralImage& integral) {
+  keypoints_.clear();
+  ranked_.clear();
+  bucket_sizes_.assign(static_cast<std::size_t>(settings_.bucket_columns * settings_.bucket_rows), 0);
+  duplicates_.reset(integral.columns(), integral.rows(), settings_.octaves);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (duplicates_.accept(candidates_[i])) {
+      const Pixel centre = nearestPixel(candidates_[i].keypoint);
+      const int column = centre.x * settings_.bucket_columns / integral.columns();
+      const int row = centre.y * settings_.bucket_rows / integral.rows();
+      int& size = bucket_sizes_[static_cast<std::size_t>(row * settings_.bucket_columns + column)];
+      ranked_.emplace_back(size++, static_cast<int>(i));
+    }
+  }
+  std::sort(ranked_.begin(), ranked_.end());
+  ranked_.resize(std::min(ranked_.size(), static_cast<std::size_t>(settings_.features)));
+  // Back to the order of strength.
+  std::sort(ranked_.begin(), ranked_.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  for (const auto& ranked : ranked_) {
+    keypoints_.push_back(candidates_[static_cast<std::size_t>(ranked.second)].keypoint);
   }
 }
 

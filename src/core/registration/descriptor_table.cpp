@@ -1,0 +1,22 @@
+#include "core/registration/descriptor_table.h"
+
+namespace perennial {
+
+void DescriptorTable::resize(std::size_t size) {
+  size_ = size;
+  stride_ = size;
+  words_.resize(kWords * stride_);
+}
+
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
+                      std::uint16_t* distances) noexcept {
+  for (std::size_t j = begin; j < end; ++j) {
+    int distance = 0;
+    for (std::size_t w = 0; w < DescriptorTable::kWords; ++w) {
+      distance += __builtin_popcountll(descriptor.words[w] ^ table.word(w)[j]);
+    }
+    distances[j - begin] = static_cast<std::uint16_t>(distance);
+  }
+}
+
+}  // namespace perennial

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "perennial/core/feature.h"
+
+namespace perennial {
+
+/// Descriptors word by word, so that one descriptor is compared with many neighbouring ones at a time.
+class DescriptorTable {
+ public:
+  static constexpr std::size_t kWords = Descriptor::kBits / 64;
+
+  /// Memory is kept and used again.
+  void resize(std::size_t size);
+  void set(std::size_t i, const Descriptor& descriptor) {
+    for (std::size_t w = 0; w < kWords; ++w) {
+      words_[w * stride_ + i] = descriptor.words[w];
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  /// Word `w` of all descriptors.
+  const std::uint64_t* word(std::size_t w) const { return words_.data() + w * stride_; }
+
+ private:
+  std::size_t size_ = 0;
+  std::size_t stride_ = 0;
+  std::vector<std::uint64_t> words_;
+};
+
+/// distances[j - begin] = Hamming distance to the j-th descriptor of the table, for j = begin..end-1.
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
+                      std::uint16_t* distances) noexcept;
+
+}  // namespace perennial

@@ -1,0 +1,124 @@
+#include "core/registration/vote_profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <tuple>
+
+namespace perennial {
+namespace {
+
+constexpr double kBin_px = 4.0;  // a quarter of the kernel: what a bin hides, smoothing would hide too
+constexpr int kReach = 12;       // bins on either side of the kernel: 3.2 deviations
+/// Kernels of the refinement, coarse to fine: the fine one is what makes the displacement accurate.
+constexpr std::array<double, 2> kRefinement_px{VoteProfile::kKernel_px, 8.0};
+constexpr int kShifts = 4;  // mean shifts with each
+
+using Kernel = std::array<double, kReach + 1>;
+
+Kernel gaussian() {
+  Kernel kernel{};
+  for (int k = 0; k <= kReach; ++k) {
+    kernel[static_cast<std::size_t>(k)] = std::exp(-0.5 * std::pow(k * kBin_px / VoteProfile::kKernel_px, 2));
+  }
+  return kernel;
+}
+
+/// Sums over the votes within reach of a place: weights, and their moments about the place.
+struct Moments {
+  double weight = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+};
+
+template <class Weight>
+Moments momentsAbout(double place_px, const std::vector<Vote>& votes, double reach_px, const Weight& weight) {
+  Moments moments;
+  for (const Vote& vote : votes) {
+    const double offset = vote.displacement_px - place_px;
+    if (std::abs(offset) <= reach_px) {
+      const double w = vote.weight * weight(offset);
+      moments.weight += w;
+      moments.first += w * offset;
+      moments.second += w * offset * offset;
+    }
+  }
+  return moments;
+}
+
+double refine(double place_px, const std::vector<Vote>& votes) {
+  for (const double kernel_px : kRefinement_px) {
+    for (int shift = 0; shift < kShifts; ++shift) {
+      const auto weight = [&](double offset) { return std::exp(-0.5 * offset * offset / (kernel_px * kernel_px)); };
+      const Moments moments = momentsAbout(place_px, votes, 3.0 * kernel_px, weight);
+      place_px += moments.weight > 0.0 ? moments.first / moments.weight : 0.0;
+    }
+  }
+  return place_px;
+}
+
+}  // namespace
+
+VotePeak VoteProfile::findPeak(const std::vector<Vote>& votes) {
+  collect(votes);
+  smooth();
+  const int best = highest();
+  VotePeak peak;
+  peak.height = smoothed_[static_cast<std::size_t>(best + half_)];
+  const int elsewhere = static_cast<int>(kElsewhere_px / kBin_px);
+  for (int bin = -half_; bin <= half_; ++bin) {
+    if (std::abs(bin - best) > elsewhere) {
+      peak.second_height = std::max(peak.second_height, smoothed_[static_cast<std::size_t>(bin + half_)]);
+    }
+  }
+  peak.displacement_px = refine(best * kBin_px, votes);
+  const Moments around =
+      momentsAbout(peak.displacement_px, votes, 2.0 * kKernel_px, [](double /*offset*/) { return 1.0; });
+  peak.width_px = around.weight > 0.0 ? std::sqrt(around.second / around.weight) : 2.0 * kKernel_px;
+  return peak;
+}
+
+void VoteProfile::collect(const std::vector<Vote>& votes) {
+  double largest = 0.0;
+  for (const Vote& vote : votes) {
+    largest = std::max(largest, std::abs(vote.displacement_px));
+  }
+  half_ = static_cast<int>(std::lround(largest / kBin_px)) + 1;
+  bins_.assign(static_cast<std::size_t>(2 * half_ + 1), 0.0);
+  for (const Vote& vote : votes) {
+    bins_[static_cast<std::size_t>(std::lround(vote.displacement_px / kBin_px) + half_)] += vote.weight;
+  }
+}
+
+void VoteProfile::smooth() {
+  static const Kernel kernel = gaussian();
+  const auto size = static_cast<int>(bins_.size());
+  smoothed_.resize(bins_.size());
+  for (int i = 0; i < size; ++i) {
+    double sum = kernel[0] * bins_[static_cast<std::size_t>(i)];
+    for (int k = 1; k <= kReach; ++k) {
+      // Both sides at once: a mirrored profile is then smoothed to the mirrored result, to the bit.
+      const double before = i - k >= 0 ? bins_[static_cast<std::size_t>(i - k)] : 0.0;
+      const double after = i + k < size ? bins_[static_cast<std::size_t>(i + k)] : 0.0;
+      sum += kernel[static_cast<std::size_t>(k)] * (before + after);
+    }
+    smoothed_[static_cast<std::size_t>(i)] = sum;
+  }
+}
+
+int VoteProfile::highest() const {
+  const auto rank = [&](int bin) {
+    return std::make_tuple(smoothed_[static_cast<std::size_t>(bin + half_)], -std::abs(bin), bin);
+  };
+  int best = -half_;
+  for (int bin = 1 - half_; bin <= half_; ++bin) {
+    if (rank(bin) > rank(best)) {
+      best = bin;
+    }
+  }
+  return best;
+}
+
+}  // namespace perennial

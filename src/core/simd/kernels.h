@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace perennial {
+
+struct BoxFilter;
+struct ColumnDifferences;
+class DescriptorTable;
+struct Descriptor;
+struct FilterRows;
+
+/// The loops that take the time, for one instruction set. Every path gives the same results to the last bit; the scalar
+/// functions, declared where they belong, are the reference.
+struct Kernels {
+  const char* name;  ///< "scalar", "baseline", "ssse3", "sse4", "avx2", "avx512", "avx512dl", "neon"
+
+  /// See differenceColumns() in box_hessian.h.
+  void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
+  /// See hessianRow() in box_hessian.h, with a step of 1.
+  void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
+                      float* responses);
+  /// See nextPeak() in maxima.h.
+  int (*next_peak)(const float* up, const float* here, const float* down, int begin, int end, float threshold);
+  /// See boxSumRow() in brief_descriptor.h.
+  void (*box_sum_row)(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
+                      std::uint16_t* sums);
+  /// See hammingDistances() in descriptor_table.h.
+  void (*hamming_distances)(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
+                            std::size_t end, std::uint16_t* distances);
+};
+
+/// What this processor can run, the scalar path first, the best one last.
+const std::vector<const Kernels*>& availableKernels();
+
+/// What is in use: the best one, unless another was chosen.
+const Kernels& kernels() noexcept;
+
+/// Chooses a path for the whole process, for tests and benchmarks. Safe at any time: all paths agree.
+void useKernels(const Kernels& chosen) noexcept;
+
+}  // namespace perennial

@@ -1,0 +1,165 @@
+// Vector code through Google Highway: compiled once per instruction set, this file including itself. Must be built
+// without contraction of multiplications and additions: the results are those of the scalar code, to the bit.
+#include "core/simd/vector_kernels.h"
+
+#include <algorithm>
+
+#include "core/features/box_hessian.h"
+#include "core/features/brief_descriptor.h"
+#include "core/features/maxima.h"
+#include "core/registration/descriptor_table.h"
+
+// Native population counts and the like, where there are any.
+#define HWY_WANT_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/simd/vector_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace perennial {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+const hn::ScalableTag<std::uint32_t> kU32;
+const hn::ScalableTag<float> kFloat;
+const hn::ScalableTag<std::uint64_t> kU64;
+
+using U32 = hn::Vec<hn::ScalableTag<std::uint32_t>>;
+using Float = hn::Vec<hn::ScalableTag<float>>;
+
+HWY_INLINE U32 timesThree(U32 value) { return hn::Add(hn::Add(value, value), value); }
+
+void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
+  const int lanes = static_cast<int>(hn::Lanes(kU32));
+  int x = begin;
+  for (; x + lanes <= end; x += lanes) {
+    const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
+    hn::StoreU(hn::Sub(at(rows.xx[1]), at(rows.xx[0])), kU32, differences.xx.data() + x);
+    const U32 yy = hn::Sub(hn::Sub(at(rows.yy[3]), at(rows.yy[0])),
+                           timesThree(hn::Sub(at(rows.yy[2]), at(rows.yy[1]))));
+    hn::StoreU(yy, kU32, differences.yy.data() + x);
+    const U32 xy = hn::Sub(hn::Sub(at(rows.xy[1]), at(rows.xy[0])), hn::Sub(at(rows.xy[3]), at(rows.xy[2])));
+    hn::StoreU(xy, kU32, differences.xy.data() + x);
+  }
+  perennial::differenceColumns(rows, x, end, differences);
+}
+
+HWY_INLINE Float scaled(U32 sum, Float norm) {
+  return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(hn::ScalableTag<std::int32_t>(), sum)), norm);
+}
+
+void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
+                float* HWY_RESTRICT responses) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloat));
+  const int lobe = filter.lobe;
+  const int half = filter.half();
+  const int half_lobe = lobe / 2;
+  const Float norm = hn::Set(kFloat, responseNorm(filter));
+  const Float weight = hn::Set(kFloat, kMixedWeight);
+  const std::uint32_t* HWY_RESTRICT xx = differences.xx.data() + begin;
+  const std::uint32_t* HWY_RESTRICT yy = differences.yy.data() + begin;
+  const std::uint32_t* HWY_RESTRICT xy = differences.xy.data() + begin;
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto at = [i](const std::uint32_t* values) HWY_ATTR { return hn::LoadU(kU32, values + i); };
+    const U32 sum_xx = hn::Sub(hn::Sub(at(xx + half + 1), at(xx - half)),
+                               timesThree(hn::Sub(at(xx + half_lobe + 1), at(xx - half_lobe))));
+    const U32 sum_yy = hn::Sub(at(yy + lobe), at(yy + 1 - lobe));
+    const U32 sum_xy = hn::Sub(hn::Sub(at(xy), at(xy - lobe)), hn::Sub(at(xy + lobe + 1), at(xy + 1)));
+    const Float dxx = scaled(sum_xx, norm);
+    const Float dyy = scaled(sum_yy, norm);
+    const Float dxy = scaled(sum_xy, norm);
+    hn::StoreU(hn::Sub(hn::Mul(dxx, dyy), hn::Mul(hn::Mul(weight, dxy), dxy)), kFloat, responses + i);
+  }
+  perennial::hessianRow(differences, filter, begin + i, 1, count - i, responses + i);
+}
+
+int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloat));
+  const Float least = hn::Set(kFloat, threshold);
+  int i = begin;
+  for (; i + lanes <= end; i += lanes) {
+    const Float value = hn::LoadU(kFloat, here + i);
+    const auto high = hn::Ge(value, least);
+    if (hn::AllFalse(kFloat, high)) {
+      continue;
+    }
+    const Float earlier = hn::Max(hn::LoadU(kFloat, here + i - 1), hn::LoadU(kFloat, up + i));
+    const Float later = hn::Max(hn::LoadU(kFloat, here + i + 1), hn::LoadU(kFloat, down + i));
+    const auto peak = hn::And(high, hn::And(hn::Ge(value, earlier), hn::Gt(value, later)));
+    const auto first = hn::FindFirstTrue(kFloat, peak);
+    if (first >= 0) {
+      return i + static_cast<int>(first);
+    }
+  }
+  return perennial::nextPeak(up, here, down, i, end, threshold);
+}
+
+void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
+               std::uint16_t* HWY_RESTRICT sums) {
+  const hn::Rebind<std::uint16_t, hn::ScalableTag<std::uint32_t>> u16;
+  const int lanes = static_cast<int>(hn::Lanes(kU32));
+  int x = 0;
+  for (; x + lanes <= count; x += lanes) {
+    const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
+    const U32 sum = hn::Sub(hn::Sub(at(below + side), at(below)), hn::Sub(at(above + side), at(above)));
+    hn::StoreU(hn::DemoteTo(u16, hn::BitCast(hn::ScalableTag<std::int32_t>(), sum)), u16, sums + x);
+  }
+  perennial::boxSumRow(above + x, below + x, side, count - x, sums + x);
+}
+
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
+                      std::uint16_t* HWY_RESTRICT distances) {
+  const hn::Rebind<std::uint16_t, hn::ScalableTag<std::uint64_t>> u16;
+  const hn::Rebind<std::uint32_t, hn::ScalableTag<std::uint64_t>> u32;
+  const std::size_t lanes = hn::Lanes(kU64);
+  std::size_t j = begin;
+  for (; j + lanes <= end; j += lanes) {
+    auto sum = hn::Zero(kU64);
+    for (std::size_t w = 0; w < DescriptorTable::kWords; ++w) {
+      const auto word = hn::Set(kU64, descriptor.words[w]);
+      sum = hn::Add(sum, hn::PopulationCount(hn::Xor(word, hn::LoadU(kU64, table.word(w) + j))));
+    }
+    const auto narrow = hn::BitCast(hn::RebindToSigned<decltype(u32)>(), hn::TruncateTo(u32, sum));
+    hn::StoreU(hn::DemoteTo(u16, narrow), u16, distances + (j - begin));
+  }
+  perennial::hammingDistances(descriptor, table, j, end, distances + (j - begin));
+}
+
+const Kernels* vectorKernels() {
+  static constexpr const char* kName = HWY_TARGET == HWY_AVX3_DL ? "avx512dl"
+                                       : HWY_TARGET == HWY_AVX3  ? "avx512"
+                                       : HWY_TARGET == HWY_AVX2  ? "avx2"
+                                       : HWY_TARGET == HWY_SSE4  ? "sse4"
+                                       : HWY_TARGET == HWY_SSSE3 ? "ssse3"
+                                       : HWY_TARGET == HWY_NEON  ? "neon"
+                                                                 : "baseline";
+  static constexpr Kernels kTable{kName, differenceColumns, hessianRow, nextPeak, boxSumRow, hammingDistances};
+  return &kTable;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace perennial
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace perennial {
+
+HWY_EXPORT(vectorKernels);
+
+void appendVectorKernels(std::vector<const Kernels*>& kernels) {
+  const std::size_t first = kernels.size();
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {  // the best one first
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    kernels.push_back(HWY_DYNAMIC_DISPATCH(vectorKernels)());
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  std::reverse(kernels.begin() + static_cast<std::ptrdiff_t>(first), kernels.end());
+}
+
+}  // namespace perennial
+#endif

@@ -1,0 +1,144 @@
+#include "core/simd/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/features/maxima.h"
+#include "core/features/synthetic_images.h"
+#include "core/registration/descriptor_table.h"
+#include "perennial/core/feature_extractor.h"
+#include "perennial/core/registration.h"
+
+namespace perennial {
+namespace {
+
+/// Each path that this processor has, forced.
+class EachPath : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  EachPath() { useKernels(path()); }
+  ~EachPath() override { useKernels(*availableKernels().back()); }
+
+  static const Kernels& scalar() { return *availableKernels().front(); }
+  static const Kernels& path() { return *availableKernels()[GetParam()]; }
+};
+
+std::vector<ExtractionSettings> kindsOfExtraction() {
+  ExtractionSettings spread;
+  spread.half_resolution = true;
+  spread.bucket_columns = 16;
+  spread.bucket_rows = 8;
+  return {ExtractionSettings(), spread};
+}
+
+TEST_P(EachPath, isTheOneInUse) { EXPECT_STREQ(kernels().name, path().name); }
+
+TEST_P(EachPath, findsTheSameFeatures) {
+  // Widths that leave every remainder behind the vectors.
+  for (const int columns : {97, 128, 203, 347, 640}) {
+    const cv::Mat image = texture(columns, 211, static_cast<std::uint64_t>(columns));
+    for (const ExtractionSettings& settings : kindsOfExtraction()) {
+      const FeatureSet features = FeatureExtractor(settings).extract(image);
+      useKernels(scalar());
+      const FeatureSet expected = FeatureExtractor(settings).extract(image);
+      useKernels(path());
+      EXPECT_EQ(features, expected) << path().name << " " << columns;
+    }
+  }
+}
+
+TEST_P(EachPath, registersTheSame) {
+  const cv::Mat wide = texture(700, 300, 9);
+  const FeatureSet map = FeatureExtractor().extract(wide(cv::Rect(0, 0, 640, 300)).clone());
+  const FeatureSet view = FeatureExtractor().extract(wide(cv::Rect(33, 2, 640, 298)).clone());
+  for (const auto method : {RegistrationMethod::kHistogram, RegistrationMethod::kRobust}) {
+    RegistrationSettings settings;
+    settings.method = method;
+    const auto registration = makeRegistration(settings);
+    const RegistrationResult result = registration->registerView(map, view);
+    useKernels(scalar());
+    const RegistrationResult expected = registration->registerView(map, view);
+    useKernels(path());
+    ASSERT_TRUE(expected.displacement_px);
+    EXPECT_EQ(result.displacement_px, expected.displacement_px);
+    EXPECT_EQ(result.partners, expected.partners);
+    EXPECT_EQ(result.states, expected.states);
+    EXPECT_EQ(result.confidence, expected.confidence);
+  }
+}
+
+TEST_P(EachPath, distancesAreThoseOfTwoDescriptors) {
+  std::mt19937_64 random(3);
+  const auto descriptor = [&] {
+    Descriptor result;
+    std::generate(result.words.begin(), result.words.end(), [&] { return random(); });
+    return result;
+  };
+  const Descriptor one = descriptor();
+  std::vector<Descriptor> others{one, one};
+  for (auto& word : others[1].words) {
+    word = ~word;  // 256 bits away
+  }
+  while (others.size() < 37) {
+    others.push_back(descriptor());
+  }
+  DescriptorTable table;
+  table.resize(others.size());
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    table.set(i, others[i]);
+  }
+  for (std::size_t begin = 0; begin <= others.size(); begin += 5) {
+    std::vector<std::uint16_t> distances(others.size() - begin + 1, 9999);
+    kernels().hamming_distances(one, table, begin, others.size(), distances.data());
+    for (std::size_t j = begin; j < others.size(); ++j) {
+      EXPECT_EQ(distances[j - begin], hammingDistance(one, others[j]));
+    }
+    EXPECT_EQ(distances.back(), 9999) << "nothing is written beyond";
+  }
+}
+
+TEST_P(EachPath, peaksAreTheSame) {
+  // Few different values, so that there are many equal neighbours.
+  std::mt19937 random(4);
+  std::vector<float> rows[3];
+  for (auto& row : rows) {
+    for (int i = 0; i < 203; ++i) {
+      row.push_back(static_cast<float>(random() % 5));
+    }
+  }
+  int peaks = 0;
+  for (int i = 1; i < 202; ++i) {
+    const int found = kernels().next_peak(rows[0].data(), rows[1].data(), rows[2].data(), i, 202, 3.0F);
+    EXPECT_EQ(found, nextPeak(rows[0].data(), rows[1].data(), rows[2].data(), i, 202, 3.0F));
+    peaks += found == i ? 1 : 0;
+  }
+  EXPECT_GT(peaks, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, EachPath, ::testing::Range<std::size_t>(0, availableKernels().size()),
+                         [](const auto& info) { return std::string(availableKernels()[info.param]->name); });
+
+TEST(Kernels, theScalarPathIsAlwaysThereAndTheLastIsInUse) {
+  EXPECT_STREQ(availableKernels().front()->name, "scalar");
+  EXPECT_EQ(&kernels(), availableKernels().back());
+}
+
+#ifdef PERENNIAL_HAS_VECTOR_CODE
+TEST(Kernels, everyBuiltPathThatRunsHereIsThere) {
+  EXPECT_GT(availableKernels().size(), 1U);
+#if defined(__x86_64__)
+  const auto has = [](const std::string& name) {
+    return std::any_of(availableKernels().begin(), availableKernels().end(),
+                       [&](const Kernels* path) { return path->name == name; });
+  };
+  EXPECT_EQ(has("avx2"), __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"));
+  EXPECT_EQ(has("avx512"), __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"));
+#endif
+}
+#endif
+
+}  // namespace
+}  // namespace perennial
