@@ -114,7 +114,7 @@ class FakeRobot:
         message = Image()
         message.header.stamp, message.header.frame_id = stamp, "camera"
         message.width, message.height, message.step, message.encoding = WIDTH, HEIGHT, WIDTH, "mono8"
-        pixels = view(self.x % self.loop_m, self.left_px)
+        pixels = view(max(self.x, 0.0) % self.loop_m, self.left_px)
         if not self.frozen:  # every real camera has noise
             self.images_taken += 1
             pixels[0, :4] = np.frombuffer(np.uint32(self.images_taken).tobytes(), np.uint8)

@@ -29,8 +29,12 @@ class Stack:
 
     @staticmethod
     def done(client):
-        # The client's simple state may be overtaken: its threads set it in any order.
-        return client.gh is None or client.gh.get_comm_state() == actionlib.CommState.DONE
+        # Either of the client's two states may be overtaken: its threads set them in any order.
+        return (
+            client.gh is None
+            or client.gh.get_comm_state() == actionlib.CommState.DONE
+            or client.simple_state == actionlib.SimpleGoalState.DONE
+        )
 
     def end(self, client):
         """Ends a goal, by its name: cancelling all goals may arrive late, and end the next one."""
@@ -50,7 +54,7 @@ class Stack:
 
     def teach_path(self, name, overwrite=False):
         robot = self.robot
-        robot.restart()
+        self.settle()
         self.start(self.teach, TeachGoal(map_name=name, overwrite=overwrite))
         if self.done(self.teach):
             return self.result(self.teach)
@@ -61,8 +65,16 @@ class Stack:
         self.teach.cancel_goal()
         return self.result(self.teach)
 
+    def settle(self, x=0.0):
+        """Puts the robot somewhere else, and waits until nothing from before is on its way any more."""
+        self.robot.restart(x)
+        self.robot.speed = 0.0
+        for _ in range(2):
+            self.robot.step(BOTH)
+        self.robot.speed = None
+
     def begin_repeat(self, name, **goal):
-        self.robot.restart(goal.get("start_distance_m", 0.0))
+        self.settle(goal.get("start_distance_m", 0.0))
         del self.registrations[:]
         self.start(self.repeat, RepeatGoal(map_name=name, **goal))
 
