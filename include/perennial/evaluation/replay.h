@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perennial/core/feature.h"
+#include "perennial/core/learning.h"
 #include "perennial/core/map_strategy.h"
 #include "perennial/core/registration.h"
 
@@ -50,9 +51,9 @@ struct PlaceReplayResult {
 };
 
 /// Teaches one local map and replays all later views of its place through what runs on the robot: the
-/// strategy chooses features, the view is registered, and the map learns from it where the registration has
-/// enough inliers. Deterministic but for the times. Safe to use from several threads with a strategy each.
+/// strategy chooses features, the view is registered, and the map learns from it where the registration
+/// passes the gate. Deterministic but for the times. Safe to use from several threads with a strategy each.
 PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strategy,
-                              const RegistrationSettings& registration, int min_inliers_for_update);
+                              const RegistrationSettings& registration, const LearningGate& gate);
 
 }  // namespace perennial

@@ -42,7 +42,7 @@ std::vector<RunSettings> Evaluation::checkedRuns() {
     create(run);
     run.registration();
     run.extraction();
-    run.minInliersForUpdate();
+    run.learningGate();
   }
   return runs;
 }
@@ -63,7 +63,8 @@ std::string Evaluation::folderOf(const RunSettings& run) const {
 std::string Evaluation::inputName(const Dataset& dataset) const {
   return dataset.manifest + " (" + std::to_string(dataset.rows.size()) +
          " images) teach=" + options_.selection.teach + " from=" + options_.selection.from +
-         " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first);
+         " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first) +
+         (options_.stored_features ? " stored features" : "");
 }
 
 void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>& places,
@@ -74,8 +75,8 @@ void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>
   }
   Progress extracting("features of images", images);
   const ReplayInput input =
-      loadReplayInput(dataset, places, runs.front().extraction(), cache_, options_.threads, problems_,
-                      [&](std::size_t done) { extracting.show(done); });
+      loadReplayInput(dataset, places, {runs.front().extraction(), options_.stored_features}, cache_,
+                      options_.threads, problems_, [&](std::size_t done) { extracting.show(done); });
 
   Progress replaying(std::to_string(runs.size()) + " runs", runs.size() * input.places.size());
   std::vector<std::vector<PlaceReplayResult>> results(runs.size(),
@@ -88,7 +89,7 @@ void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>
     const std::size_t p = job % input.places.size();
     const auto strategy = create(runs[r]);
     results[r][p] =
-        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].minInliersForUpdate());
+        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].learningGate());
     const std::lock_guard<std::mutex> lock(mutex);
     replaying.show(++done);
     if (++places_done[r] == input.places.size()) {

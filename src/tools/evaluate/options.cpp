@@ -10,16 +10,17 @@ namespace perennial {
 const char* const kEvaluateUsage =
     R"(usage: evaluate DATASET --out DIR (--strategy NAME [--set KEY=VALUE]... | --sweep FILE.yaml [--set KEY=VALUE]...)
 
-Teaches every place of a data set (a folder with manifest.csv) from its first traversal, then registers every later one
+Teaches every place of a data set (a folder with manifest.csv, or with maps of the reference system) from its first traversal, then registers every later one
 in order of time and lets the map learn from it. Writes errors.csv, lives.csv and summary.json to DIR, or, for a sweep,
 to a folder of DIR for each run. Runs that are complete already are not repeated.
 
   --set KEY=VALUE   a parameter of the strategy, or of a group: registration/ratio, extraction/features,
-                    map_manager/min_inliers_for_update
+                    map_manager/min_inliers_for_update, map_manager/min_confidence_for_update
   --sweep FILE      runs a grid of strategies and parameters
   --teach NAME      traversal that teaches instead of the first
   --from NAME, --to NAME   first and last traversal to register
   --skip-first N    leave the first N registrations of each place out of the results; the map learns from them all the same
+  --stored-features  those in the maps of the reference system, instead of extracting our own from their images
   --threads N       default: one per processor
   --cache DIR       where extracted features are kept, default: ~/.cache/perennial_nav/features
 )";
@@ -50,7 +51,9 @@ EvaluateOptions parseEvaluateOptions(const std::vector<std::string>& arguments) 
       {"--cache", [&](const std::string& value) { options.cache = value; }}};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const auto option = known.find(arguments[i]);
-    if (option != known.end() && i + 1 < arguments.size()) {
+    if (arguments[i] == "--stored-features") {
+      options.stored_features = true;
+    } else if (option != known.end() && i + 1 < arguments.size()) {
       option->second(arguments[++i]);
     } else if (arguments[i].rfind("-", 0) == 0 || !options.dataset.empty()) {
       throw ParameterError("'" + arguments[i] + "' is not understood, or lacks its value");

@@ -19,6 +19,7 @@ struct EvaluateOptions {
   std::vector<std::string> assignments;
   ReplaySelection selection;
   std::size_t skip_first = 0;
+  bool stored_features = false;
   unsigned threads = 0;
   std::string cache = defaultCacheFolder();
 };
