@@ -10,9 +10,10 @@ void takeOver(LocalMap& map, const MapStrategy& strategy) {
   map.adopt(numbersOwner(strategy), strategy.numbersPerFeature());
 }
 
-bool teaches(const Observation& observation, int min_inliers_for_update) {
-  return observation.registration.displacement_px.has_value() &&
-         observation.registration.inliers >= min_inliers_for_update;
+bool teaches(const Observation& observation, const LearningGate& gate) {
+  const RegistrationResult& found = observation.registration;
+  return found.displacement_px.has_value() && found.inliers >= gate.min_inliers &&
+         found.confidence >= gate.min_confidence;
 }
 
 void learn(LocalMap& map, const MapStrategy& strategy, const Observation& observation) {

@@ -85,8 +85,7 @@ void MapManager::observe(std::uint32_t index, double local_map_distance_m, Obser
   if (index >= kPlacesUntilLearned) {
     learn(index - kPlacesUntilLearned + 1);
   }
-  const bool sure = observation.registration.confidence >= settings_.min_confidence_for_update;
-  if (!sure || !teaches(observation, settings_.min_inliers_for_update) || index < learned_before_) {
+  if (!teaches(observation, settings_.gate()) || index < learned_before_) {
     return;
   }
   const double offset_m = std::abs(observation.distance_m - local_map_distance_m);

@@ -90,7 +90,7 @@ void FeatureLives::add(const FeatureLives& other) {
 }
 
 PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strategy,
-                              const RegistrationSettings& registration_settings, int min_inliers_for_update) {
+                              const RegistrationSettings& registration_settings, const LearningGate& gate) {
   const auto registration = makeRegistration(registration_settings);
   LocalMap map = teach(place);
   takeOver(map, strategy);
@@ -111,7 +111,7 @@ PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strat
     observation.view = *view.features;
     observation.stamp_s = view.stamp_s;
     observation.distance_m = place.distance_m;
-    if (teaches(observation, min_inliers_for_update)) {
+    if (teaches(observation, gate)) {
       const double learning_start_ms = threadMilliseconds();
       learn(map, strategy, observation);
       result.steps.back().learning_ms = threadMilliseconds() - learning_start_ms;

@@ -145,11 +145,11 @@ ExtractionSettings RunSettings::extraction() const {
   return settings;
 }
 
-int RunSettings::minInliersForUpdate() const {
+LearningGate RunSettings::gate() const {
   ParameterReader parameters = reader("map_manager");
   const auto settings = MapManagerSettings::load(parameters);
   parameters.requireAllUsed();
-  return settings.min_inliers_for_update;
+  return settings.gate();
 }
 
 ParameterReader RunSettings::strategyReader() const { return reader(""); }

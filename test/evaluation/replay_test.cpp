@@ -29,7 +29,7 @@ ReplayPlace syntheticReplay(std::size_t views) {
 TEST(Replay, isWhatTheStepsDoByHand) {
   const ReplayPlace place = syntheticReplay(30);
   const strategies::ScoreBased strategy;
-  const PlaceReplayResult result = replayPlace(place, strategy, {}, 5);
+  const PlaceReplayResult result = replayPlace(place, strategy, {}, {});
 
   LocalMap map;
   map.stamp_s = place.taught.stamp_s;
@@ -55,23 +55,25 @@ TEST(Replay, isWhatTheStepsDoByHand) {
 TEST(Replay, teachesNothingBelowTheGate) {
   const ReplayPlace place = syntheticReplay(10);
   const strategies::LatestMap strategy;
-  const PlaceReplayResult gated = replayPlace(place, strategy, {}, 1000);
-  const PlaceReplayResult untouched = replayPlace(place, strategies::StaticMap(), {}, 5);
-  for (std::size_t v = 0; v < 10; ++v) {
-    EXPECT_EQ(gated.steps[v].displacement_px, untouched.steps[v].displacement_px);
+  const PlaceReplayResult untouched = replayPlace(place, strategies::StaticMap(), {}, {});
+  for (const LearningGate& gate : {LearningGate{1000, 0.0}, LearningGate{1, 1.1}}) {
+    const PlaceReplayResult gated = replayPlace(place, strategy, {}, gate);
+    for (std::size_t v = 0; v < 10; ++v) {
+      EXPECT_EQ(gated.steps[v].displacement_px, untouched.steps[v].displacement_px);
+    }
+    EXPECT_EQ(gated.lives.kept, untouched.lives.kept);
   }
-  EXPECT_EQ(gated.lives.kept, untouched.lives.kept);
 }
 
 TEST(Replay, countsHowLongFeaturesLive) {
   const ReplayPlace place = syntheticReplay(3);
-  const PlaceReplayResult latest = replayPlace(place, strategies::LatestMap(), {}, 5);
+  const PlaceReplayResult latest = replayPlace(place, strategies::LatestMap(), {}, {});
   for (const ReplayStep& step : latest.steps) {
     ASSERT_TRUE(step.displacement_px);
   }
   EXPECT_EQ(latest.lives.dropped, (std::vector<std::size_t>{0, 240}));
   EXPECT_EQ(latest.lives.kept, (std::vector<std::size_t>{80}));
-  const PlaceReplayResult unchanged = replayPlace(place, strategies::StaticMap(), {}, 5);
+  const PlaceReplayResult unchanged = replayPlace(place, strategies::StaticMap(), {}, {});
   EXPECT_EQ(unchanged.lives.dropped, std::vector<std::size_t>());
   EXPECT_EQ(unchanged.lives.kept, (std::vector<std::size_t>{0, 0, 0, 80}));
   FeatureLives sum = unchanged.lives;

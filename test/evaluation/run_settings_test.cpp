@@ -28,7 +28,7 @@ TEST(RunSettings, putParametersIntoTheirGroups) {
   run.set("map_manager/min_inliers_for_update=12");
   EXPECT_EQ(run.registration().ratio, 0.8);
   EXPECT_EQ(run.extraction().features, 300);
-  EXPECT_EQ(run.minInliersForUpdate(), 12);
+  EXPECT_EQ(run.gate().min_inliers, 12);
   ParameterReader reader = run.strategyReader();
   EXPECT_EQ(reader.real("exchange", 0.0, 0.0, 1.0), 0.1);
   EXPECT_TRUE(reader.boolean("random_add", false));

@@ -9,8 +9,14 @@ namespace perennial {
 /// Makes the map's numbers the strategy's: those of another strategy or version give way to zeros.
 void takeOver(LocalMap& map, const MapStrategy& strategy);
 
-/// Whether an observation may teach anything: its registration found a displacement, with enough inliers.
-bool teaches(const Observation& observation, int min_inliers_for_update);
+/// How good a registration must be for the map to learn from it.
+struct LearningGate {
+  int min_inliers = 5;
+  double min_confidence = 0.0;
+};
+
+/// Whether an observation may teach anything: its registration found a displacement, and passes the gate.
+bool teaches(const Observation& observation, const LearningGate& gate);
 
 /// The strategy learns from the observation. Throws Error when it breaks the map, see LocalMap::problem().
 void learn(LocalMap& map, const MapStrategy& strategy, const Observation& observation);

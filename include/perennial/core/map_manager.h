@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perennial/core/active_map.h"
+#include "perennial/core/learning.h"
 #include "perennial/core/map_file.h"
 #include "perennial/core/map_strategy.h"
 #include "perennial/core/parameter_reader.h"
@@ -18,6 +19,8 @@ struct MapManagerSettings {
   double lookbehind_m = 1.0;       ///< and this far behind it
   int min_inliers_for_update = 5;  ///< a registration with fewer inliers teaches nothing
   double min_confidence_for_update = 0.0;  ///< neither does one of lower confidence
+
+  LearningGate gate() const { return {min_inliers_for_update, min_confidence_for_update}; }
 
   /// Keys as the members are called. Throws ParameterError.
   static MapManagerSettings load(ParameterReader& reader);

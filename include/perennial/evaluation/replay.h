@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "perennial/core/feature.h"
+#include "perennial/core/learning.h"
 #include "perennial/core/map_strategy.h"
 #include "perennial/core/registration.h"
 
@@ -54,6 +55,6 @@ struct PlaceReplayResult {
 /// strategy chooses features, the view is registered, and the map learns from it where the registration has
 /// enough inliers. Deterministic but for the times. Safe to use from several threads with a strategy each.
 PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strategy,
-                              const RegistrationSettings& registration, int min_inliers_for_update);
+                              const RegistrationSettings& registration, const LearningGate& gate);
 
 }  // namespace perennial

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "perennial/core/feature_extractor.h"
+#include "perennial/core/learning.h"
 #include "perennial/core/parameter_reader.h"
 #include "perennial/core/registration.h"
 
@@ -30,7 +31,7 @@ class RunSettings {
   /// These throw ParameterError for unknown keys and values out of range.
   RegistrationSettings registration() const;
   ExtractionSettings extraction() const;
-  int minInliersForUpdate() const;
+  LearningGate gate() const;
   /// Of the strategy; to be read by its `configure`, then `requireAllUsed`.
   ParameterReader strategyReader() const;
 
