@@ -24,14 +24,21 @@ ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stam
 
 ActiveRegistration registerView(const Registration& registration, const ActiveMap& map,
                                 const FeatureSet& view) {
+  ActiveRegistrationWorkspace workspace;
   ActiveRegistration best;
+  registerInto(registration, map, view, workspace, best);
+  return best;
+}
+
+void registerInto(const Registration& registration, const ActiveMap& map, const FeatureSet& view,
+                  ActiveRegistrationWorkspace& workspace, ActiveRegistration& result) {
   for (std::size_t k = 0; k < map.alternatives.size(); ++k) {
-    RegistrationResult result = registration.registerView(map.alternatives[k].features, view);
-    if (k == 0 || result.inliers > best.result.inliers) {
-      best = {k, std::move(result)};
+    registration.registerInto(map.alternatives[k].features, view, workspace.registration, workspace.candidate);
+    if (k == 0 || workspace.candidate.inliers > result.result.inliers) {
+      result.alternative = k;
+      std::swap(result.result, workspace.candidate);
     }
   }
-  return best;
 }
 
 void ActiveMapWindow::reset(std::size_t path_size) {

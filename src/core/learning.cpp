@@ -11,9 +11,9 @@ void takeOver(LocalMap& map, const MapStrategy& strategy) {
 }
 
 bool teaches(const Observation& observation, const LearningGate& gate) {
-  const RegistrationResult& found = observation.registration;
-  return found.displacement_px.has_value() && found.inliers >= gate.min_inliers &&
-         found.confidence >= gate.min_confidence;
+  const RegistrationResult& registration = observation.registration;
+  return registration.displacement_px.has_value() && registration.inliers >= gate.min_inliers &&
+         registration.confidence >= gate.min_confidence;
 }
 
 void learn(LocalMap& map, const MapStrategy& strategy, const Observation& observation) {

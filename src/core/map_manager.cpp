@@ -20,10 +20,8 @@ MapManagerSettings MapManagerSettings::load(ParameterReader& reader) {
   MapManagerSettings settings;
   settings.lookahead_m = reader.real("lookahead_m", settings.lookahead_m, 0.1, 1000.0);
   settings.lookbehind_m = reader.real("lookbehind_m", settings.lookbehind_m, 0.0, 1000.0);
-  settings.min_inliers_for_update =
-      reader.integer("min_inliers_for_update", settings.min_inliers_for_update, 1, 10000);
-  settings.min_confidence_for_update =
-      reader.real("min_confidence_for_update", settings.min_confidence_for_update, 0.0, 1.0);
+  settings.gate.min_inliers = reader.integer("min_inliers_for_update", settings.gate.min_inliers, 1, 10000);
+  settings.gate.min_confidence = reader.real("min_confidence_for_update", settings.gate.min_confidence, 0.0, 1.0);
   return settings;
 }
 
@@ -85,7 +83,7 @@ void MapManager::observe(std::uint32_t index, double local_map_distance_m, Obser
   if (index >= kPlacesUntilLearned) {
     learn(index - kPlacesUntilLearned + 1);
   }
-  if (!teaches(observation, settings_.gate()) || index < learned_before_) {
+  if (!teaches(observation, settings_.gate) || index < learned_before_) {
     return;
   }
   const double offset_m = std::abs(observation.distance_m - local_map_distance_m);

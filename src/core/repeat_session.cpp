@@ -48,13 +48,18 @@ void RepeatSession::requireSuitable(const cv::Mat& image, const std::string& enc
 }
 
 NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv::Mat& image) {
+  NavigationStep step;
+  stepInto(stamp_s, travelled_m, image, step);
+  return step;
+}
+
+void RepeatSession::stepInto(double stamp_s, double travelled_m, const cv::Mat& image, NavigationStep& step) {
   if (!start_travelled_m_) {
     start_travelled_m_ = travelled_m;
   }
   const double interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
   previous_travelled_m_ = travelled_m;
 
-  NavigationStep step;
   step.stamp_s = stamp_s;
   step.distance_m = distance(travelled_m);
   const ActiveMap* map = window_.nearest(step.distance_m);
@@ -63,13 +68,17 @@ NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv:
   }
   step.local_map = map->index;
   step.local_map_distance_m = map->distance_m;
-  step.view = extractor_.extract(image);
-  step.registration = registerView(*registration_, *map, step.view);
+  extractor_.extractInto(image, step.view);
+  registerInto(*registration_, *map, step.view, workspace_, step.registration);
   step.positions = map->alternatives[step.registration.alternative].positions;
   correctDistance(step, interval_m);
   step.velocity = velocityFor(step, interval_m);
   window_.forgetBefore(step.distance_m, kKeepBehind_m);
-  return step;
+}
+
+PlaceEvidence RepeatSession::evidence(const ActiveMap& map, const FeatureSet& view) {
+  registerInto(*registration_, map, view, workspace_, neighbour_);
+  return {map.distance_m, neighbour_.result.inliers};
 }
 
 void RepeatSession::correctDistance(const NavigationStep& step, double interval_m) {
@@ -81,11 +90,9 @@ void RepeatSession::correctDistance(const NavigationStep& step, double interval_
   if (before == nullptr || after == nullptr) {
     return;
   }
-  const auto evidence = [&](const ActiveMap& map) {
-    return PlaceEvidence{map.distance_m, registerView(*registration_, map, step.view).result.inliers};
-  };
-  const auto seen_m = placeOfView(evidence(*before), {step.local_map_distance_m, step.registration.result.inliers},
-                                  evidence(*after));
+  const auto seen_m =
+      placeOfView(evidence(*before, step.view), {step.local_map_distance_m, step.registration.result.inliers},
+                  evidence(*after, step.view));
   if (seen_m) {
     along_path_.update(step.distance_m, *seen_m, interval_m);
   }

@@ -145,11 +145,11 @@ ExtractionSettings RunSettings::extraction() const {
   return settings;
 }
 
-LearningGate RunSettings::gate() const {
+LearningGate RunSettings::learningGate() const {
   ParameterReader parameters = reader("map_manager");
   const auto settings = MapManagerSettings::load(parameters);
   parameters.requireAllUsed();
-  return settings.gate();
+  return settings.gate;
 }
 
 ParameterReader RunSettings::strategyReader() const { return reader(""); }

@@ -50,7 +50,8 @@ BagPlayer::BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh)
   try {
     bag_.open(settings_.bag, rosbag::bagmode::Read);
   } catch (const rosbag::BagException& error) {
-    throw Error("bag " + settings_.bag + " cannot be read: " + error.what());
+    throw Error("bag " + settings_.bag + " cannot be read: " + error.what() +
+                (settings_.bag.front() == '/' ? "" : " (nodes run in another folder: give an absolute path)"));
   }
   requireTopics();
   clock_publisher_ = nh_.advertise<rosgraph_msgs::Clock>("/clock", 100);
@@ -88,8 +89,7 @@ void BagPlayer::advertise() {
 
 bool BagPlayer::run() {
   publishClock(rosbag::View(bag_).getBeginTime());
-  const bool success = settings_.mode == "teach" ? teach() : repeat();
-  return success;
+  return settings_.mode == "teach" ? teach() : repeat();
 }
 
 bool BagPlayer::teach() {
@@ -108,8 +108,7 @@ bool BagPlayer::teach() {
     throw Error("teach_recorder does not finish the map");
   }
   const auto result = client.getResult();
-  ROS_INFO("%zu images played: %s", images_, result->message.c_str());
-  return result->success != 0;
+  return ended(result->success != 0, result->message);
 }
 
 bool BagPlayer::repeat() {
@@ -132,8 +131,13 @@ bool BagPlayer::repeat() {
     throw Error("repeat_navigator does not end");
   }
   const auto result = client.getResult();
-  ROS_INFO("%zu images played: %s", images_, result->reason.c_str());
-  return result->success != 0;
+  return ended(result->success != 0, result->reason);
+}
+
+bool BagPlayer::ended(bool success, const std::string& message) const {
+  ROS_LOG(success ? ros::console::levels::Info : ros::console::levels::Error, ROSCONSOLE_DEFAULT_NAME,
+          "%zu images played: %s", images_, message.c_str());
+  return success;
 }
 
 void BagPlayer::awaitStart(const std::function<bool()>& started) {
@@ -158,7 +162,8 @@ void BagPlayer::play(const std::function<bool()>& stop) {
     if (message.getTopic() == settings_.image_topic) {
       const sensor_msgs::ImageConstPtr image = message.instantiate<sensor_msgs::Image>();
       if (!image) {
-        throw Error(settings_.image_topic + " of the bag does not hold sensor_msgs/Image");
+        throw Error(settings_.image_topic + " of the bag holds " + message.getDataType() +
+                    ", not sensor_msgs/Image; compressed images must be unpacked (image_transport republish) first");
       }
       unanswered_.insert(image->header.stamp);
       ++images_;

@@ -278,7 +278,8 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
   const cv::Mat grey = greyImage(image);
   run_->session->requireSuitable(grey, image->encoding);
   run_->session->setFocalLength(focalLength(grey.cols));
-  const NavigationStep step = run_->session->step(image->header.stamp.toSec(), travelled_m, grey);
+  run_->session->stepInto(image->header.stamp.toSec(), travelled_m, grey, step_);
+  const NavigationStep& step = step_;
   run_->travelled_m = travelled_m;
   run_->newest_stamp = image->header.stamp;
   send(step, image);

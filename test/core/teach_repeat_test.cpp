@@ -123,7 +123,7 @@ TEST_F(TeachRepeat, learnsOncePerLocalMapAndInTheMapsFrame) {
 TEST_F(TeachRepeat, learnsOnlyFromWhatItIsSureOf) {
   teach();
   MapManagerSettings settings;
-  settings.min_confidence_for_update = 1.0;  // which no estimate reaches
+  settings.gate.min_confidence = 1.0;  // which no estimate reaches
   MapManager manager(MapFile(file()), std::make_shared<strategies::LatestMap>(), settings);
   for (const NavigationStep& step : repeat(manager, 30)) {
     EXPECT_GT(step.registration.result.confidence, 0.9);

@@ -56,13 +56,17 @@ TEST(Replay, teachesNothingBelowTheGate) {
   const ReplayPlace place = syntheticReplay(10);
   const strategies::LatestMap strategy;
   const PlaceReplayResult untouched = replayPlace(place, strategies::StaticMap(), {}, {});
-  for (const LearningGate& gate : {LearningGate{1000, 0.0}, LearningGate{1, 1.1}}) {
+  const LearningGate too_few{1000, 0.0};
+  const LearningGate unsure{1, 1.0};  // which no estimate reaches
+  for (const LearningGate& gate : {too_few, unsure}) {
     const PlaceReplayResult gated = replayPlace(place, strategy, {}, gate);
     for (std::size_t v = 0; v < 10; ++v) {
       EXPECT_EQ(gated.steps[v].displacement_px, untouched.steps[v].displacement_px);
     }
     EXPECT_EQ(gated.lives.kept, untouched.lives.kept);
   }
+  const PlaceReplayResult sure = replayPlace(place, strategy, {}, {1, 0.9});
+  EXPECT_NE(sure.lives.dropped, untouched.lives.dropped);
 }
 
 TEST(Replay, countsHowLongFeaturesLive) {

@@ -28,7 +28,10 @@ TEST(RunSettings, putParametersIntoTheirGroups) {
   run.set("map_manager/min_inliers_for_update=12");
   EXPECT_EQ(run.registration().ratio, 0.8);
   EXPECT_EQ(run.extraction().features, 300);
-  EXPECT_EQ(run.gate().min_inliers, 12);
+  EXPECT_EQ(run.learningGate().min_inliers, 12);
+  RunSettings sure("score_based");
+  sure.set("map_manager/min_confidence_for_update=0.9");
+  EXPECT_EQ(sure.learningGate().min_confidence, 0.9);
   ParameterReader reader = run.strategyReader();
   EXPECT_EQ(reader.real("exchange", 0.0, 0.0, 1.0), 0.1);
   EXPECT_TRUE(reader.boolean("random_add", false));

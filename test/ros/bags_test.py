@@ -60,19 +60,25 @@ def call(*words):
     return done.stdout
 
 
+def shipped_parameters():
+    folder = os.path.join(rospkg.RosPack().get_path("perennial_nav"), "config")
+    with open(os.path.join(folder, "repeat_navigator.yaml")) as file:
+        return yaml.safe_load(file)
+
+
+def assignments(parameters):
+    """What core_displacements shall do as the nodes do it: extraction/features=500 ..."""
+    return ["%s/%s=%s" % (group, key, yaml.safe_dump(value).split()[0])
+            for group in ("extraction", "registration") for key, value in parameters[group].items()]  # fmt: skip
+
+
 class Bags(unittest.TestCase):
-    def displacements_by_nodes(self, dataset, taught, repeated, name, min_inliers):
+    def displacements_by_nodes(self, dataset, taught, repeated, name, config):
         bags = [os.path.join(FOLDER, "%s_%s.bag" % (name, traversal)) for traversal in (taught, repeated)]
         for traversal, bag in zip((taught, repeated), bags):
             call("rosrun", "perennial_nav", "dataset_to_bag", dataset, traversal, bag, "--overwrite")
         common = ["map:=" + name, "map_folder:=" + os.path.join(FOLDER, "maps")]
         call("roslaunch", "perennial_nav", "teach.launch", "bag:=" + bags[0], "overwrite:=true", *common)
-        config = os.path.join(FOLDER, name + ".yaml")
-        shipped = os.path.join(rospkg.RosPack().get_path("perennial_nav"), "config", "repeat_navigator.yaml")
-        with open(shipped) as original, open(config, "w") as changed:
-            parameters = yaml.safe_load(original)
-            parameters["registration"]["min_inliers"] = min_inliers
-            yaml.safe_dump(parameters, changed)
         common.append("config:=" + config)
         registrations = []
         subscriber = rospy.Subscriber("/registration", Registration, registrations.append, queue_size=1000)
@@ -84,8 +90,13 @@ class Bags(unittest.TestCase):
         return registrations
 
     def compare(self, dataset, taught, repeated, name, min_inliers=5):
-        lines = call(CORE_DISPLACEMENTS, dataset, taught, repeated, "0.7", str(min_inliers)).splitlines()
-        registrations = self.displacements_by_nodes(dataset, taught, repeated, name, min_inliers)
+        config = os.path.join(FOLDER, name + ".yaml")
+        parameters = shipped_parameters()
+        parameters["registration"]["min_inliers"] = min_inliers
+        with open(config, "w") as file:
+            yaml.safe_dump(parameters, file)
+        lines = call(CORE_DISPLACEMENTS, dataset, taught, repeated, *assignments(parameters)).splitlines()
+        registrations = self.displacements_by_nodes(dataset, taught, repeated, name, config)
         self.assertEqual(len(registrations), len(lines), "every image of the bag must be registered, and once")
         print("\n%-22s %12s %14s %12s" % (name + ": distance [m]", "nodes [px]", "ground truth", "error [px]"))
         right = 0

@@ -38,6 +38,16 @@ struct ActiveRegistration {
 ActiveRegistration registerView(const Registration& registration, const ActiveMap& map,
                                 const FeatureSet& view);
 
+/// Memory that registrations against local maps work in, see RegistrationWorkspace.
+struct ActiveRegistrationWorkspace {
+  RegistrationWorkspace registration;
+  RegistrationResult candidate;
+};
+
+/// The same into a result whose memory is used again.
+void registerInto(const Registration& registration, const ActiveMap& map, const FeatureSet& view,
+                  ActiveRegistrationWorkspace& workspace, ActiveRegistration& result);
+
 /// The local maps around the robot, as they were sent ahead. Not thread-safe.
 class ActiveMapWindow {
  public:

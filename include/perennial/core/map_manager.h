@@ -17,10 +17,8 @@ namespace perennial {
 struct MapManagerSettings {
   double lookahead_m = 5.0;        ///< local maps are handed out this far ahead of the robot
   double lookbehind_m = 1.0;       ///< and this far behind it
-  int min_inliers_for_update = 5;  ///< a registration with fewer inliers teaches nothing
-  double min_confidence_for_update = 0.0;  ///< neither does one of lower confidence
-
-  LearningGate gate() const { return {min_inliers_for_update, min_confidence_for_update}; }
+  /// Keys: min_inliers_for_update, min_confidence_for_update.
+  LearningGate gate;
 
   /// Keys as the members are called. Throws ParameterError.
   static MapManagerSettings load(ParameterReader& reader);
@@ -43,8 +41,8 @@ class MapManager {
   /// A local map as it is used in this traversal.
   ActiveMap activeMap(std::uint32_t index) const;
 
-  /// What was seen near local map `index`, which lies at `local_map_distance_m`. Observations without a displacement, or
-  /// with too few inliers, are ignored.
+  /// What was seen near local map `index`, which lies at `local_map_distance_m`. Observations that do not pass the gate are
+  /// ignored.
   void observe(std::uint32_t index, double local_map_distance_m, Observation observation);
 
   /// Learns from what is still pending and stores everything (`commit`) or forgets it. Returns how many local maps

@@ -66,6 +66,8 @@ class RepeatSession {
 
   /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
+  /// The same into a step whose memory is used again: once it has served for as many features, nothing is allocated.
+  void stepInto(double stamp_s, double travelled_m, const cv::Mat& image, NavigationStep& step);
 
   /// Steering and registration may change on the way; a camera's focal length may become known.
   void setSteering(const SteeringSettings& steering) { steering_ = steering; }
@@ -74,6 +76,7 @@ class RepeatSession {
 
  private:
   void correctDistance(const NavigationStep& step, double interval_m);
+  PlaceEvidence evidence(const ActiveMap& map, const FeatureSet& view);
   /// Velocity to send until the next image, `interval_m` after the last one.
   Velocity velocityFor(const NavigationStep& step, double interval_m) const;
 
@@ -88,6 +91,8 @@ class RepeatSession {
   std::optional<double> focal_length_px_;
 
   ActiveMapWindow window_;
+  ActiveRegistrationWorkspace workspace_;
+  ActiveRegistration neighbour_;  ///< of the local map before or after the robot's
   double start_m_ = 0.0;
   std::optional<double> start_travelled_m_;
   std::optional<double> previous_travelled_m_;

@@ -52,8 +52,8 @@ struct PlaceReplayResult {
 };
 
 /// Teaches one local map and replays all later views of its place through what runs on the robot: the
-/// strategy chooses features, the view is registered, and the map learns from it where the registration has
-/// enough inliers. Deterministic but for the times. Safe to use from several threads with a strategy each.
+/// strategy chooses features, the view is registered, and the map learns from it where the registration
+/// passes the gate. Deterministic but for the times. Safe to use from several threads with a strategy each.
 PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strategy,
                               const RegistrationSettings& registration, const LearningGate& gate);
 

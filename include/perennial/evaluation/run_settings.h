@@ -17,7 +17,7 @@ class RunSettings {
   explicit RunSettings(std::string strategy) : strategy_(std::move(strategy)) {}
 
   /// Sets a parameter by "key=value". The key is the strategy's, or begins with the group it belongs to, as
-  /// in the nodes: "registration/ratio", "extraction/features", "map_manager/min_inliers_for_update". The
+  /// in the nodes: "registration/ratio", "extraction/features", "map_manager/min_confidence_for_update". The
   /// value is YAML: true, 5, 0.5, [1, 2], text. Throws ParameterError for anything else, not yet for unknown
   /// keys.
   void set(const std::string& assignment);
@@ -31,7 +31,7 @@ class RunSettings {
   /// These throw ParameterError for unknown keys and values out of range.
   RegistrationSettings registration() const;
   ExtractionSettings extraction() const;
-  LearningGate gate() const;
+  LearningGate learningGate() const;
   /// Of the strategy; to be read by its `configure`, then `requireAllUsed`.
   ParameterReader strategyReader() const;
 

@@ -55,6 +55,8 @@ class BagPlayer {
   void requireTopics() const;
   void advertise();
   void publishClock(const ros::Time& time);
+  /// Says how it went; returns `success`.
+  bool ended(bool success, const std::string& message) const;
   /// A message played before the node works on the goal would be lost.
   void awaitStart(const std::function<bool()>& started);
   /// `stop`: asked between messages whether playing on makes no sense.

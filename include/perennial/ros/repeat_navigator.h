@@ -104,6 +104,7 @@ class RepeatNavigator {
   TraversalClient traversals_;
   CommandGate gate_;
   std::unique_ptr<Run> run_;
+  NavigationStep step_;  ///< the newest one; its memory is used again
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::string state_ = perennial_nav::NavigationState::IDLE;
   std::string reason_;

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/registration.h"
@@ -17,9 +19,11 @@ namespace {
 
 struct Settings {
   int shift_px = 40;
+  std::string navigator = "/repeat_navigator";  ///< whose parameters for extraction, registration and steering are used
   static Settings load(perennial::ParameterReader& reader) {
     Settings settings;
     settings.shift_px = reader.integer("shift_px", settings.shift_px, 1, 1000);
+    settings.navigator = reader.text("navigator", settings.navigator);
     return settings;
   }
 };
@@ -32,11 +36,17 @@ cv::Mat turnedLeft(const cv::Mat& image, int shift_px) {
   return turned;
 }
 
+/// Registers and steers as the navigator would: with its parameters where they are set, the defaults where not.
 /// The first image is the map. Its own copies, turned by arithmetic, are registered once; every further image
 /// as it comes, so that a person can turn the robot and look.
 struct Node {
   Node(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
       : settings(perennial::loadNode<Settings>(private_nh, {})),
+        navigator(settings.navigator),
+        extractor(perennial::loadGroup<perennial::ExtractionSettings>(navigator, "extraction")),
+        registration(perennial::makeRegistration(
+            perennial::loadGroup<perennial::RegistrationSettings>(navigator, "registration"))),
+        steering(perennial::loadGroup<perennial::SteeringSettings>(navigator, "steering")),
         subscriber(nh.subscribe("image", 1, &Node::onImage, this)) {}
 
   void onImage(const sensor_msgs::ImageConstPtr& message) {
@@ -55,13 +65,12 @@ struct Node {
   }
 
   void report(const char* what, const perennial::FeatureSet& view) {
-    const auto result = registration.registerView(map, view);
+    const auto result = registration->registerView(map, view);
     if (!result.displacement_px) {
       std::printf("%s: nothing recognised (%d pairs agree)\n", what, result.inliers);
       return;
     }
-    const double turn =
-        perennial::steer({}, result.displacement_px, std::nullopt, perennial::SteeringSettings()).angular;
+    const double turn = perennial::steer({}, result.displacement_px, std::nullopt, steering).angular;
     const char* way = std::abs(*result.displacement_px) < 1.0 ? "go straight on"
                       : turn > 0.0                            ? "turn LEFT"
                                                               : "turn RIGHT";
@@ -70,8 +79,10 @@ struct Node {
   }
 
   Settings settings;
+  ros::NodeHandle navigator;
   perennial::FeatureExtractor extractor;
-  perennial::HistogramRegistration registration;
+  std::unique_ptr<perennial::Registration> registration;
+  perennial::SteeringSettings steering;
   perennial::FeatureSet map;
   ros::Time last_report;
   ros::Subscriber subscriber;

@@ -52,7 +52,7 @@ std::vector<RunSettings> Evaluation::checkedRuns() {
     create(run);
     run.registration();
     run.extraction();
-    run.gate();
+    run.learningGate();
   }
   return runs;
 }
@@ -101,7 +101,7 @@ void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>
     const std::size_t p = job % input.places.size();
     const auto strategy = create(runs[r]);
     results[r][p] =
-        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].gate());
+        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].learningGate());
     const std::lock_guard<std::mutex> lock(mutex);
     replaying.show(++done);
     if (++places_done[r] == input.places.size()) {

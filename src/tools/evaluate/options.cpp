@@ -20,7 +20,7 @@ INPUT is a folder with manifest.csv, or with maps of the reference system, or on
   --image-topic NAME       default: /camera/image_raw
 
   --set KEY=VALUE   a parameter of the strategy, or of a group: registration/ratio, extraction/features,
-                    map_manager/min_inliers_for_update
+                    map_manager/min_inliers_for_update, map_manager/min_confidence_for_update
   --sweep FILE      runs a grid of strategies and parameters
   --teach NAME      traversal that teaches instead of the first
   --from NAME, --to NAME   first and last traversal to register
