@@ -213,7 +213,7 @@ TEST_F(ReferenceDataset, isReplayedWithTheSignOfTheGroundTruth) {
   ASSERT_EQ(input.places.size(), 2U);
   for (std::size_t p = 0; p < 2; ++p) {
     const PlaceReplayResult result =
-        replayPlace(input.places[p], strategies::StaticMap(), RegistrationSettings(), 5);
+        replayPlace(input.places[p], strategies::StaticMap(), RegistrationSettings(), {});
     ASSERT_EQ(result.steps.size(), 2U);
     for (std::size_t v = 0; v < 2; ++v) {
       EXPECT_EQ(input.groundTruth(p, v), kLeft_px[v + 1][p] - kLeft_px[0][p])
