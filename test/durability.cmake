@@ -4,5 +4,5 @@ target_link_libraries(full_disk_preload ${CMAKE_DL_LIBS})
 set(durability_nodes map_manager_node map_tool perennial_strategies repeat_navigator_node teach_recorder_node)
 add_rostest(ros/durability/kill.test ARGS folder:=${scratch}/kill DEPENDENCIES ${durability_nodes})
 add_rostest(ros/durability/durability.test
-  ARGS folder:=${scratch}/durability preload:=$<TARGET_FILE:full_disk_preload>
+  ARGS folder:=${scratch}/durability
   DEPENDENCIES ${durability_nodes} full_disk_preload)

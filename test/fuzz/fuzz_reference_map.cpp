@@ -1,5 +1,5 @@
-// Any YAML is refused or read as a local map of the reference system. The line that OpenCV insists on comes first, as without it
-// nearly every input would end there.
+// Any YAML is refused or read as a local map of the reference system. The line that OpenCV insists on comes
+// first, as without it nearly every input would end there.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
