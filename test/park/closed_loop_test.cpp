@@ -184,6 +184,7 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
     const char* name;
     RegistrationMethod method;
     bool half_and_buckets;
+    double min_confidence;
   };
   const std::vector<std::pair<const char*, park::Weather>> whens{{"2026-06-21T13:00:00Z", park::Weather::kClear},
                                                                  {"2026-06-21T15:00:00Z", park::Weather::kRain},
@@ -191,14 +192,14 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
                                                                  {"2026-06-21T22:30:00Z", park::Weather::kClear},
                                                                  {"2026-10-20T12:00:00Z", park::Weather::kOvercast}};
   may_get_lost_ = true;
-  for (const Setting& setting : {Setting{"histogram, full", RegistrationMethod::kHistogram, false},
-                                 Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true},
-                                 Setting{"robust, full", RegistrationMethod::kRobust, false},
-                                 Setting{"robust, half + buckets", RegistrationMethod::kRobust, true}}) {
+  for (const Setting& setting : {Setting{"histogram, full", RegistrationMethod::kHistogram, false, 0.0},
+                                 Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, 0.0},
+                                 Setting{"robust, full", RegistrationMethod::kRobust, false, 0.0},
+                                 Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, 0.0},
+                                 Setting{"the same, the default", RegistrationMethod::kRobust, true, 0.4}}) {
     settings_.registration.method = setting.method;
-    settings_.extraction.half_resolution = setting.half_and_buckets;
-    settings_.extraction.bucket_columns = setting.half_and_buckets ? 16 : 1;
-    settings_.extraction.bucket_rows = setting.half_and_buckets ? 8 : 1;
+    settings_.registration.min_confidence = setting.min_confidence;
+    settings_.extraction = setting.half_and_buckets ? ExtractionSettings() : ExtractionSettings::published();
     park::ParkSettings park_settings;
     park_settings.image_rate_hz = 5;
     park::ParkSimulation park(park_settings, {});
