@@ -1,6 +1,7 @@
 #include "perennial/evaluation/replay_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -152,6 +153,35 @@ ReplayInput loadReplayInput(const Dataset& dataset, const std::vector<SelectedPl
   }
   input.ms_per_extraction = extracted > 0 ? extraction_ms / static_cast<double>(extracted) : 0.0;
   return input;
+}
+
+void repeatViews(ReplayInput& input, std::size_t count) {
+  constexpr double kDay_s = 86400.0;
+  for (std::size_t p = 0; p < input.places.size(); ++p) {
+    std::vector<ReplayView>& views = input.places[p].views;
+    std::vector<DatasetRow>& rows = input.rows[p];
+    const std::size_t once = views.size();
+    if (once == 0 || once >= count) {
+      continue;
+    }
+    const double round_s =
+        kDay_s * (std::floor((views.back().stamp_s - views.front().stamp_s) / kDay_s) + 1.0);
+    views.reserve(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      const std::size_t round = v / once;
+      if (round > 0) {
+        views.push_back(views[v % once]);
+        rows.push_back(rows[v % once]);
+        views[v].stamp_s += round_s * static_cast<double>(round);
+        rows[v].stamp_s = views[v].stamp_s;
+      }
+    }
+    for (std::size_t v = 0; v < count; ++v) {
+      const std::string round = std::to_string(v / once);
+      rows[v].traversal =
+          std::string(round.size() < 4 ? 4 - round.size() : 0, '0') + round + "_" + rows[v].traversal;
+    }
+  }
 }
 
 }  // namespace perennial

@@ -1,5 +1,6 @@
 #include "perennial/ros/bag_player.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <actionlib/client/simple_action_client.h>
@@ -44,7 +45,7 @@ BagPlayerSettings BagPlayerSettings::load(ParameterReader& reader) {
 
 BagPlayer::BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(std::move(nh)),
-      settings_(loadNode<BagPlayerSettings>(private_nh, {})),
+      settings_(loadNode<BagPlayerSettings>(private_nh, {"evaluation"})),
       node_(settings_.mode == "teach" ? "teach_recorder" : "repeat_navigator") {
   try {
     bag_.open(settings_.bag, rosbag::bagmode::Read);
@@ -211,6 +212,9 @@ bool BagPlayer::waitUntil(const std::function<bool()>& done, double seconds) {
 void BagPlayer::onProcessed(const perennial_nav::Processed& message) {
   if (message.node == node_) {
     unanswered_.erase(message.header.stamp);
+    if (message.has_command) {
+      newest_answered_ = std::max(newest_answered_, message.header.stamp);
+    }
   }
 }
 

@@ -65,8 +65,10 @@ class DrawsUnseededNumbers : public Healthy {
 
 class ForgetsWhatIsNotSeen : public Healthy {
   void update(LocalMap& map, const Observation& observation) const override {
-    std::vector<bool> drop(map.size());
-    drop[0] = observation.view.empty() && !map.features.empty();
+    std::vector<bool> drop(map.size(), false);
+    if (observation.view.empty() && !drop.empty()) {
+      drop.front() = true;
+    }
     map.erase(drop);
   }
 };

@@ -145,6 +145,12 @@ TEST_F(ReferenceMaps, malformedOnesAreRefusedByName) {
   expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file + ":1:", "%YAML");
   std::ofstream(folder_ / file) << "%YAML:1.0\n---\nImage: !!opencv-matrix\n   rows: [";
   expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file, "is no OpenCV FileStorage YAML");
+  for (const char* size :
+       {"rows: 1\n   cols: 100000", "rows: -1\n   cols: 2", "rows: 1\n   cols: \"many\"", "cols: 1"}) {
+    std::ofstream(folder_ / file) << "%YAML:1.0\n---\nImage: !!opencv-matrix\n   " << size
+                                  << "\n   dt: u\n   data: [ 1, 2 ]\n";
+    expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file, "is no matrix");
+  }
   std::ofstream(folder_ / file) << "%YAML:1.0\n---\nTime: soon\n";
   expectError(errorOf([&] { readReferenceTime(folder_ / file); }), file + ":3:", "soon");
   expectError(errorOf([&] { readReferenceMap(folder_ / "none.yaml"); }), "none.yaml", "cannot be read");
@@ -207,7 +213,7 @@ TEST_F(ReferenceDataset, isReplayedWithTheSignOfTheGroundTruth) {
   ASSERT_EQ(input.places.size(), 2U);
   for (std::size_t p = 0; p < 2; ++p) {
     const PlaceReplayResult result =
-        replayPlace(input.places[p], strategies::StaticMap(), RegistrationSettings(), 5);
+        replayPlace(input.places[p], strategies::StaticMap(), RegistrationSettings(), {});
     ASSERT_EQ(result.steps.size(), 2U);
     for (std::size_t v = 0; v < 2; ++v) {
       EXPECT_EQ(input.groundTruth(p, v), kLeft_px[v + 1][p] - kLeft_px[0][p])

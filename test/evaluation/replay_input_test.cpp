@@ -43,7 +43,7 @@ class ReplayInputTest : public ::testing::Test {
     const Dataset dataset = loadDataset(folder_.path());
     problems_.clear();
     images_ = 0;
-    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), {},
+    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), ExtractionSettings::published(),
                            FeatureCache(folder_ / "cache"), 2, problems_,
                            [&](std::size_t done) { images_ = std::max(images_, done); });
   }
@@ -125,6 +125,21 @@ TEST_F(ReplayInputTest, aPlaceWithoutItsMapIsLeftOut) {
   ASSERT_EQ(input.places.size(), 1U);
   EXPECT_EQ(input.places[0].distance_m, 1.0);
   EXPECT_TRUE(hasProblem("manifest.csv:2:", "left out"));
+}
+
+TEST_F(ReplayInputTest, repeatsViewsAsIfTheSameDaysCameAgain) {
+  ReplayInput input = load();
+  repeatViews(input, 8);
+  ASSERT_EQ(input.places[1].views.size(), 8U);
+  ASSERT_EQ(input.rows[1].size(), 8U);
+  EXPECT_EQ(input.rows[1][2].traversal, "0000_t3");
+  EXPECT_EQ(input.rows[1][7].traversal, "0002_t2");
+  EXPECT_EQ(input.groundTruth(1, 7), 20.0);
+  EXPECT_EQ(input.places[1].views[7].stamp_s, input.rows[1][1].stamp_s + 2 * 3 * 86400.0);
+  EXPECT_EQ(input.rows[1][7].stamp_s, input.places[1].views[7].stamp_s);
+  EXPECT_EQ(input.places[1].views[7].features, input.places[1].views[1].features);
+  repeatViews(input, 3);
+  EXPECT_EQ(input.places[0].views.size(), 8U) << "nothing is taken away";
 }
 
 TEST(ParallelFor, doesEachTaskOnceAndPassesErrorsOn) {

@@ -74,7 +74,9 @@ class ClosedLoop : public ::testing::Test {
     MapMetadata metadata;
     metadata.name = "loop";
     metadata.camera = "camera";
-    TeachSession session(folder_ / "loop.perennial", metadata, false, {}, {});
+    TeachSession session(folder_ / "loop.perennial", metadata, true, {}, settings_.extraction);
+    taught_.clear();
+    taught_m_.clear();
     Odometer odometer;
     park.place(0.0, 0.0);
     park.setDriver(true);
@@ -116,9 +118,8 @@ class ClosedLoop : public ::testing::Test {
   }
 
   /// Repeats the path `traversals` times without a stop; the errors of each traversal.
-  std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager, int traversals,
-                                              const RepeatSettings& settings = {}) {
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings);
+  std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager, int traversals) {
+    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings_);
     session.setFocalLength(park.settings().camera.geometry.fx);
     Odometer odometer;
     std::vector<std::vector<TrackError>> errors;
@@ -142,9 +143,11 @@ class ClosedLoop : public ::testing::Test {
         manager.observe(step.local_map, step.local_map_distance_m, observationOf(step));
         park.command(step.velocity);
         errors.back().push_back(errorOf(frame.true_pose, step.distance_m));
+        lost_ = std::abs(errors.back().back().lateral_m) > 2.0;
         registered_ += step.registration.result.displacement_px.has_value();
         ++images_;
-      } while (!session.atEnd(*travelled_m) && errors.back().size() < 2000);
+      } while (!session.atEnd(*travelled_m) && !lost_ && errors.back().size() < 2000);
+      EXPECT_FALSE(lost_ && !may_get_lost_) << "more than 2 m beside the path";
       EXPECT_LT(errors.back().size(), 2000U) << "did not finish the loop";
       start_m = session.distance(*travelled_m) - session.length();
       manager.endTraversal(true, static_cast<double>(park.nowNs()) * 1e-9);
@@ -157,6 +160,9 @@ class ClosedLoop : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  RepeatSettings settings_;
+  bool may_get_lost_ = false;
+  bool lost_ = false;
   OdometryFault fault_;
   std::vector<park::Pose> taught_;
   std::vector<double> taught_m_;  ///< by the odometer

@@ -62,4 +62,9 @@ ReplayInput loadReplayInput(const Dataset& dataset, const std::vector<SelectedPl
                             std::vector<std::string>& problems,
                             const std::function<void(std::size_t)>& progress);
 
+/// Repeats the views of each place until there are `count` of them, as if the same days came again: each
+/// round is later by whole days, and its number stands before the traversals' names ("0002_name"). Places
+/// with as many views keep theirs.
+void repeatViews(ReplayInput& input, std::size_t count);
+
 }  // namespace perennial
