@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Plots and page of `rosrun perennial_nav report`: plot_report.py OUT RUN...
+"""Plots and page of `rosrun perennial_nav report`: plot_report.py OUT LATITUDE LONGITUDE RUN...
 
-Each RUN is a folder written by `evaluate`; OUT holds comparisons.csv already.
+Each RUN is a folder written by `evaluate`; OUT holds comparisons.csv already. Latitude and longitude, in degrees, are of
+where the images were taken: day and night go by the sun's elevation there.
 """
 import base64
 import csv
 import datetime
 import html
 import json
+import math
 import os
 import sys
 
@@ -26,11 +28,12 @@ MOST_CURVES = 12
 SEASONS = {12: "winter", 1: "winter", 2: "winter", 3: "spring", 4: "spring", 5: "spring",
            6: "summer", 7: "summer", 8: "summer", 9: "autumn", 10: "autumn", 11: "autumn"}
 SEASON_COLOURS = {"winter": "#dfe9f5", "spring": "#e6f3e0", "summer": "#fdf6d8", "autumn": "#f8e7d8"}
-DAY_HOURS_UTC = (6, 18)
+# Day: the sun is up. Twilight: less than 6 degrees below the horizon (civil twilight).
+LIGHTS = {"day": "full", "twilight": "left", "night": "none"}
 
 
 class Run:
-    def __init__(self, folder):
+    def __init__(self, folder, site):
         self.name = os.path.basename(os.path.normpath(folder))
         self.label = self.name
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
@@ -40,21 +43,47 @@ class Run:
         with open(os.path.join(folder, "lives.csv"), encoding="utf-8", newline="") as stream:
             self.lives = [(int(row["age_traversals"]), int(row["dropped"]), int(row["kept"]))
                           for row in csv.DictReader(stream)]
+        self.costs = []
+        if os.path.exists(os.path.join(folder, "cost.csv")):  # not of bags through the nodes
+            with open(os.path.join(folder, "cost.csv"), encoding="utf-8", newline="") as stream:
+                self.costs = [(int(row["registration"]), float(row["registration_ms"]), float(row["learning_ms"]))
+                              for row in csv.DictReader(stream)]
         for row in self.rows:
             row["time"] = parse_time(row["stamp"])
+            row["light"] = light_at(row["time"], site)
             row["error"] = float(row["error_px"]) if row["error_px"] else None
 
     def absolute_errors(self):
         return sorted(abs(row["error"]) for row in self.rows if row["error"] is not None)
 
     def by_traversal(self):
-        """(time, [signed errors]) of each traversal, in order of the traversals' names."""
+        """(time, light, [signed errors]) of each traversal, in order of the traversals' names."""
         traversals = {}
         for row in self.rows:
             traversals.setdefault(row["traversal"], []).append(row)
         for name in sorted(traversals):
             rows = traversals[name]
-            yield rows[0]["time"], [row["error"] for row in rows if row["error"] is not None]
+            yield rows[0]["time"], rows[0]["light"], [row["error"] for row in rows if row["error"] is not None]
+
+
+def sun_elevation_deg(time, latitude_deg, longitude_deg):
+    """Low-precision formulas of the Astronomical Almanac, section C; without refraction."""
+    days = (time - datetime.datetime(2000, 1, 1, 12)).total_seconds() / 86400.0
+    anomaly = math.radians(357.528 + 0.9856003 * days)
+    longitude = math.radians(280.460 + 0.9856474 * days + 1.915 * math.sin(anomaly) + 0.020 * math.sin(2 * anomaly))
+    obliquity = math.radians(23.439 - 4e-7 * days)
+    right_ascension = math.atan2(math.cos(obliquity) * math.sin(longitude), math.cos(longitude))
+    declination = math.asin(math.sin(obliquity) * math.sin(longitude))
+    sidereal = math.radians(15.0 * (18.697374558 + 24.06570982441908 * days) + longitude_deg)
+    latitude = math.radians(latitude_deg)
+    return math.degrees(math.asin(
+        math.sin(latitude) * math.sin(declination)
+        + math.cos(latitude) * math.cos(declination) * math.cos(sidereal - right_ascension)))  # fmt: skip
+
+
+def light_at(time, site):
+    elevation = sun_elevation_deg(time, *site)
+    return "day" if elevation > 0.0 else "twilight" if elevation > -6.0 else "night"
 
 
 def parse_time(text):
@@ -150,12 +179,14 @@ def plot_time(runs, axes):
     rows, times = [], []
     style = styles(runs)
     for run in runs:
-        points = sorted((time, median([abs(e) for e in errors])) for time, errors in run.by_traversal() if errors)
-        for kind, face in (("day", style[run.name]["color"]), ("night", "none")):
-            of_kind = [p for p in points if (DAY_HOURS_UTC[0] <= p[0].hour < DAY_HOURS_UTC[1]) == (kind == "day")]
-            axes.scatter([p[0] for p in of_kind], [p[1] for p in of_kind], s=12, facecolors=face, alpha=0.35,
-                         edgecolors=style[run.name]["color"], linewidths=0.8, zorder=2)
-            rows += [(run.name, p[0].isoformat() + "Z", kind, "%.6g" % p[1]) for p in of_kind]
+        points = sorted((time, median([abs(e) for e in errors]), light) for time, light, errors in run.by_traversal()
+                        if errors)  # fmt: skip
+        for light, fill in LIGHTS.items():
+            of_light = [p for p in points if p[2] == light]
+            axes.plot([p[0] for p in of_light], [p[1] for p in of_light], linestyle="none", marker="o", markersize=4.5,
+                      fillstyle=fill, markerfacecoloralt="none", color=style[run.name]["color"], alpha=0.45,
+                      markeredgewidth=0.8, zorder=2)  # fmt: skip
+            rows += [(run.name, p[0].isoformat() + "Z", light, "%.6g" % p[1]) for p in of_light]
         smooth = [median([p[1] for p in points[max(0, i - 4):i + 5]]) for i in range(len(points))]
         axes.plot([p[0] for p in points], smooth, linewidth=1.6, zorder=3, label=run.label, **style[run.name])
         times += [p[0] for p in points]
@@ -165,7 +196,7 @@ def plot_time(runs, axes):
     axes.set_ylim(bottom=0)
     set_ticks(axes.yaxis, *axes.get_ylim())
     axes.xaxis.set_major_formatter(matplotlib.dates.ConciseDateFormatter(axes.xaxis.get_major_locator()))
-    axes.set_xlabel("time; filled: day (%d to %d h UTC), open: night" % DAY_HOURS_UTC)
+    axes.set_xlabel("time; filled: day, half: twilight (sun 0 to 6 degrees below the horizon), open: night")
     axes.set_ylabel("median error of a traversal, px")
     axes.set_title("Error over time (lines: median of nine traversals)")
     axes.grid(alpha=0.3)
@@ -178,7 +209,7 @@ def plot_drift(runs, axes):
     style = styles(runs)
     for run in runs:
         window, xs, ys = [], [], []
-        for traversal, (_, errors) in enumerate(run.by_traversal(), 1):
+        for traversal, (_, _, errors) in enumerate(run.by_traversal(), 1):
             window = (window + [errors])[-10:]
             values = [error for some in window for error in some]
             if values:
@@ -221,7 +252,33 @@ def plot_lives(runs, axes):
     return ("run", "age_traversals", "share"), rows
 
 
-FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("lives", plot_lives)]
+def plot_cost(runs, axes):
+    """Medians, because other programs disturb single measurements."""
+    rows = []
+    style = styles(runs)
+    for run in runs:
+        last = len(run.costs)
+        edges = sorted({min(last, round(10 ** (step / 6.0))) for step in range(0, 30)} | {0}) if last else []
+        xs, ys = [], []
+        for begin, end in zip(edges, edges[1:]):
+            some = run.costs[begin:end]
+            xs.append(end)
+            ys.append(median([cost[1] for cost in some]))
+            rows.append((run.name, end, "%.6g" % ys[-1], "%.6g" % median([cost[2] for cost in some])))
+        axes.plot(xs, ys, label=run.label, linewidth=1.6, marker=".", **style[run.name])
+    axes.set_xscale("log")
+    axes.set_ylim(bottom=0)
+    axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+    axes.set_xlabel("registrations of the place so far")
+    axes.set_ylabel("processor time per registration, ms")
+    axes.set_title("Cost of a registration")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "registrations_to", "registration_ms", "learning_ms"), rows
+
+
+FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("lives", plot_lives),
+           ("cost", plot_cost)]
 
 
 def write_csv(path, header, rows):
@@ -268,6 +325,22 @@ def table_of_runs(out, runs):
     return table(header, rows)
 
 
+def table_by_light(out, runs):
+    """Shares within 20 px by day, in twilight and at night."""
+    header = ["run"] + ["%s %%" % light for light in LIGHTS] + ["%s, registrations" % light for light in LIGHTS]
+    rows = []
+    for run in runs:
+        shares, counts = [], []
+        for light in LIGHTS:
+            errors = [row["error"] for row in run.rows if row["light"] == light]
+            counts.append(len(errors))
+            within = sum(error is not None and abs(error) <= 20.0 for error in errors)
+            shares.append(number(100.0 * within / len(errors), 1) if errors else "")
+        rows.append([run.name] + shares + counts)
+    write_csv(os.path.join(out, "light.csv"), header, rows)
+    return table(header, rows)
+
+
 def probability(text):
     value = float(text)
     return "&lt; 0.0001" if value < 1e-4 else "%.4f" % value
@@ -305,6 +378,8 @@ def page(out, runs):
         parts.append("<p>Drawn and compared below is the best run of each strategy (by the share within 20 px, then "
                      "the mean error); the table holds all of them, comparisons.csv all pairs.</p>")
     parts += [draw(out, name, function, drawn) for name, function in FIGURES]
+    parts += ["<h2>By day and night</h2>", "<p>Shares within 20 px. Day: the sun is up; twilight: it is less than 6 degrees "
+              "below the horizon.</p>", table_by_light(out, drawn)]
     parts += ["<h2>All runs</h2>", "<p>Shares are of all registrations: a missing answer counts as wrong. Means and the "
               "median are over the answered ones.</p>", table_of_runs(out, runs)]
     parts += ["<h2>Paired t-tests</h2>", "<p>Absolute errors, over the registrations that both runs answered; the others "
@@ -316,10 +391,11 @@ def page(out, runs):
 
 
 def main(arguments):
-    if len(arguments) < 2:
+    if len(arguments) < 4:
         print(__doc__, file=sys.stderr)
         return 2
-    page(arguments[0], [Run(folder) for folder in arguments[1:]])
+    site = (float(arguments[1]), float(arguments[2]))
+    page(arguments[0], [Run(folder, site) for folder in arguments[3:]])
     print(os.path.join(arguments[0], "report.html"))
     return 0
 

@@ -1,11 +1,15 @@
 #include "perennial/core/dataset.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 #include <tuple>
 
 #include "perennial/core/csv.h"
 #include "perennial/core/error.h"
+#include "perennial/core/reference_map.h"
 #include "perennial/core/utc_time.h"
 
 namespace perennial {
@@ -36,8 +40,9 @@ DatasetRow parseRow(const CsvTable& table, const CsvRow& row, const std::string&
   return result;
 }
 
-std::string at(const Dataset& dataset, const DatasetRow& row) {
-  return dataset.manifest + ":" + std::to_string(row.line) + ": ";
+/// How another row is called in a message.
+std::string other(const DatasetRow& row) {
+  return row.line == 0 ? " (" + row.image + ")" : " (line " + std::to_string(row.line) + ")";
 }
 
 /// Rows of one place, in order of the traversals' names.
@@ -45,14 +50,13 @@ void checkPlace(const Dataset& dataset, const std::vector<DatasetRow>& place) {
   for (std::size_t k = 1; k < place.size(); ++k) {
     const DatasetRow& before = place[k - 1];
     const DatasetRow& row = place[k];
-    const std::string other = " (line " + std::to_string(before.line) + ")";
     if (row.traversal == before.traversal) {
-      throw DatasetError(at(dataset, row) + "traversal '" + row.traversal + "' has this place already" +
-                         other);
+      throw DatasetError(dataset.at(row) + "traversal '" + row.traversal + "' has this place already" +
+                         other(before));
     }
     if (row.stamp_s < before.stamp_s) {
-      throw DatasetError(at(dataset, row) + "time goes backwards at this place: traversal '" + row.traversal +
-                         "' is earlier than '" + before.traversal + "'" + other);
+      throw DatasetError(dataset.at(row) + "time goes backwards at this place: traversal '" + row.traversal +
+                         "' is earlier than '" + before.traversal + "'" + other(before));
     }
   }
 }
@@ -91,18 +95,52 @@ std::map<double, std::vector<DatasetRow>> Dataset::places() const {
   return result;
 }
 
-cv::Mat Dataset::readImage(const DatasetRow& row) const {
-  cv::Mat image = cv::imread(row.image, cv::IMREAD_GRAYSCALE);
+std::string Dataset::at(const DatasetRow& row) const {
+  return row.line == 0 ? row.image + ": " : manifest + ":" + std::to_string(row.line) + ": ";
+}
+
+std::string Dataset::readFile(const DatasetRow& row) const {
+  std::ifstream stream(row.image, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  if (!stream || content.str().empty()) {
+    throw DatasetError(at(row) + "the image " + row.image + " cannot be read; is it there, and an image?");
+  }
+  return content.str();
+}
+
+cv::Mat Dataset::decodeImage(const DatasetRow& row, const std::string& content) const {
+  if (row.line == 0) {
+    const ReferenceLocalMap map = decodeReferenceMap(content, row.image);
+    if (map.image.empty()) {
+      throw DatasetError(at(row) + "holds no Image to extract features from, only stored ones");
+    }
+    return map.image;
+  }
+  cv::Mat image = cv::imdecode(std::vector<char>(content.begin(), content.end()), cv::IMREAD_GRAYSCALE);
   if (image.empty()) {
-    throw DatasetError(at(*this, row) + "the image " + row.image +
-                       " cannot be read; is it there, and an image?");
+    throw DatasetError(at(row) + row.image + " is not an image");
   }
   return image;
+}
+
+cv::Mat Dataset::readImage(const DatasetRow& row) const { return decodeImage(row, readFile(row)); }
+
+void sortAndCheck(Dataset& dataset) {
+  std::stable_sort(dataset.rows.begin(), dataset.rows.end(), [](const DatasetRow& a, const DatasetRow& b) {
+    return std::tie(a.traversal, a.distance_m) < std::tie(b.traversal, b.distance_m);
+  });
+  for (const auto& place : dataset.places()) {
+    checkPlace(dataset, place.second);
+  }
 }
 
 Dataset loadDataset(const std::string& folder) {
   Dataset dataset;
   dataset.manifest = folder + "/manifest.csv";
+  if (!std::filesystem::exists(dataset.manifest) && !listReferenceMaps(folder).empty()) {
+    return loadReferenceDataset(folder);
+  }
   const CsvTable table = CsvTable::load(dataset.manifest);
   for (const CsvRow& row : table.rows()) {
     dataset.rows.push_back(parseRow(table, row, folder));
@@ -110,12 +148,7 @@ Dataset loadDataset(const std::string& folder) {
   if (dataset.rows.empty()) {
     throw DatasetError(dataset.manifest + ": has a header, but no rows");
   }
-  std::stable_sort(dataset.rows.begin(), dataset.rows.end(), [](const DatasetRow& a, const DatasetRow& b) {
-    return std::tie(a.traversal, a.distance_m) < std::tie(b.traversal, b.distance_m);
-  });
-  for (const auto& place : dataset.places()) {
-    checkPlace(dataset, place.second);
-  }
+  sortAndCheck(dataset);
   return dataset;
 }
 

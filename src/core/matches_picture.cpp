@@ -5,6 +5,8 @@
 #include <iomanip>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -20,7 +22,8 @@ const cv::Scalar kUnmatched(190, 170, 90);
 constexpr int kGap = 8;          // px between the images
 constexpr int kHeader = 30;      // px for the line of text on top
 constexpr int kHistogram = 150;  // px for the histogram below
-constexpr double kLineOpacity = 0.35;  // hundreds of lines must not hide the images
+constexpr double kLineOpacity = 0.35;  // of few lines; hundreds must not hide the images
+constexpr int kFewLines = 40;
 constexpr int kShownHalf = 20;   // bins shown on each side of 0, at least
 
 void write(cv::Mat& canvas, const std::string& text, cv::Point where, double size = 0.5,
@@ -68,6 +71,22 @@ void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view, c
       cv::circle(canvas, from, 3, colour, cv::FILLED, cv::LINE_AA);
       cv::circle(canvas, to, 3, colour, cv::FILLED, cv::LINE_AA);
     }
+  }
+}
+
+double lineOpacity(int lines) { return kLineOpacity * std::sqrt(1.0 * kFewLines / std::max(kFewLines, lines)); }
+
+/// Right-aligned, on one line.
+void drawLegend(cv::Mat& canvas, int baseline_y) {
+  const std::vector<std::pair<std::string, cv::Scalar>> entries{
+      {"not matched", kUnmatched}, {"matched, disagrees", kIncorrect}, {"matched, agrees", kCorrect}};
+  int right = canvas.cols - 8;
+  for (const auto& [text, colour] : entries) {
+    int baseline = 0;
+    right -= cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.4, 1, &baseline).width;
+    write(canvas, text, {right, baseline_y}, 0.4);
+    cv::circle(canvas, {right - 9, baseline_y - 4}, 3, colour, cv::FILLED, cv::LINE_AA);
+    right -= 32;
   }
 }
 
@@ -130,12 +149,14 @@ cv::Mat drawMatches(const cv::Mat& map_image, const cv::Mat& view_image, const F
       drawPairs(lines ? with_lines : canvas, map, view, result, state, map_offset, view_offset, lines);
     }
     if (lines) {
-      cv::addWeighted(with_lines, kLineOpacity, canvas, 1.0 - kLineOpacity, 0.0, canvas);
+      const double opacity = lineOpacity(result.matches);
+      cv::addWeighted(with_lines, opacity, canvas, 1.0 - opacity, 0.0, canvas);
     }
   }
   write(canvas, "map", {8, 20});
   write(canvas, "view     " + headline(result), {view_offset.x + 8, 20});
   drawHistogram(canvas.rowRange(kHeader + images_height, canvas.rows), result);
+  drawLegend(canvas, kHeader + images_height + 14);
   return canvas;
 }
 

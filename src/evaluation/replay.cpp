@@ -101,8 +101,8 @@ PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strat
     const ActiveMap active = activate(strategy, map, view.stamp_s);
     ActiveRegistration registered = registerView(*registration, active, *view.features);
     const RegistrationResult& found = registered.result;
-    result.steps.push_back(
-        {found.displacement_px, found.inliers, found.matches, map.size(), threadMilliseconds() - start_ms});
+    result.steps.push_back({found.displacement_px, found.inliers, found.matches, map.size(),
+                            threadMilliseconds() - start_ms, 0.0});
 
     Observation observation;
     const auto& used = active.alternatives[registered.alternative].positions;
@@ -112,7 +112,9 @@ PlaceReplayResult replayPlace(const ReplayPlace& place, const MapStrategy& strat
     observation.stamp_s = view.stamp_s;
     observation.distance_m = place.distance_m;
     if (teaches(observation, gate)) {
+      const double learning_start_ms = threadMilliseconds();
       learn(map, strategy, observation);
+      result.steps.back().learning_ms = threadMilliseconds() - learning_start_ms;
     }
     lives.record(map, result.steps.size());
   }

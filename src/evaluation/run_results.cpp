@@ -35,7 +35,11 @@ std::string jsonText(const std::string& text) {
   return result + "\"";
 }
 
+/// null for NaN, which JSON does not have.
 std::string number(double value) {
+  if (std::isnan(value)) {
+    return "null";
+  }
   std::ostringstream text;
   text << std::setprecision(10) << value;
   return text.str();
@@ -49,6 +53,8 @@ std::string exact(double value) {
   text << std::setprecision(17) << value;
   return text.str();
 }
+
+std::string exact(const std::optional<double>& value) { return value ? exact(*value) : ""; }
 
 /// The lines by which a run is known, as they stand in summary.json.
 std::string identity(const RunSettings& settings, const std::string& input) {
@@ -85,8 +91,8 @@ std::string errorsCsv(const std::vector<RegistrationRecord>& records) {
   for (const RegistrationRecord& record : records) {
     const auto error = record.error();
     text += csvField(record.traversal) + "," + formatUtc(record.stamp_s) + "," + number(record.distance_m) +
-            "," + (error ? exact(*record.step.displacement_px) : "") + "," + exact(record.ground_truth_px) +
-            "," + (error ? exact(*error) : "") + "," + std::to_string(record.step.inliers) + "," +
+            "," + exact(record.step.displacement_px) + "," + exact(record.ground_truth_px) + "," +
+            exact(error) + "," + std::to_string(record.step.inliers) + "," +
             std::to_string(record.step.matches) + "," + std::to_string(record.step.map_features) + "\n";
   }
   return text;
@@ -99,6 +105,16 @@ std::string livesCsv(const FeatureLives& lives) {
   };
   for (std::size_t age = 0; age < std::max(lives.dropped.size(), lives.kept.size()); ++age) {
     text += std::to_string(age) + "," + at(lives.dropped, age) + "," + at(lives.kept, age) + "\n";
+  }
+  return text;
+}
+
+std::string costCsv(const std::vector<RegistrationCost>& costs) {
+  std::string text = "registration,places,registration_ms,learning_ms,map_features\n";
+  for (std::size_t n = 0; n < costs.size(); ++n) {
+    const RegistrationCost& cost = costs[n];
+    text += std::to_string(n + 1) + "," + std::to_string(cost.places) + "," + number(cost.registration_ms) +
+            "," + number(cost.learning_ms) + "," + number(cost.map_features) + "\n";
   }
   return text;
 }
@@ -122,25 +138,30 @@ RunSummary summarise(const std::vector<RegistrationRecord>& records) {
   std::vector<double> errors;
   double signed_sum = 0.0;
   double ms = 0.0;
+  double answered = 0.0;
+  double known = 0.0;
   for (const RegistrationRecord& record : records) {
     ms += record.step.registration_ms;
+    answered += record.step.displacement_px ? 1.0 : 0.0;
+    known += record.ground_truth_px ? 1.0 : 0.0;
     if (const auto error = record.error()) {
       errors.push_back(std::abs(*error));
       signed_sum += *error;
     }
   }
   const double all = std::max(1.0, static_cast<double>(records.size()));
-  const auto answers = static_cast<double>(errors.size());
+  const auto judged = static_cast<double>(errors.size());
   std::sort(errors.begin(), errors.end());
   for (const int threshold : kThresholds_px) {
     const auto within = std::upper_bound(errors.begin(), errors.end(), static_cast<double>(threshold));
-    summary.within_px.emplace_back(threshold, static_cast<double>(within - errors.begin()) / all);
+    summary.within_px.emplace_back(threshold,
+                                   static_cast<double>(within - errors.begin()) / std::max(1.0, known));
   }
-  summary.answered = answers / all;
+  summary.answered = answered / all;
   summary.ms_per_registration = ms / all;
   if (!errors.empty()) {
-    summary.mean_error_px = std::accumulate(errors.begin(), errors.end(), 0.0) / answers;
-    summary.mean_signed_error_px = signed_sum / answers;
+    summary.mean_error_px = std::accumulate(errors.begin(), errors.end(), 0.0) / judged;
+    summary.mean_signed_error_px = signed_sum / judged;
     const std::size_t middle = errors.size() / 2;
     summary.median_error_px =
         errors.size() % 2 == 1 ? errors[middle] : 0.5 * (errors[middle - 1] + errors[middle]);
@@ -166,6 +187,26 @@ std::vector<RegistrationRecord> recordsOf(const ReplayInput& input,
   return records;
 }
 
+std::vector<RegistrationCost> costsOf(const std::vector<PlaceReplayResult>& places) {
+  std::vector<RegistrationCost> costs;
+  for (const PlaceReplayResult& place : places) {
+    costs.resize(std::max(costs.size(), place.steps.size()));
+    for (std::size_t n = 0; n < place.steps.size(); ++n) {
+      ++costs[n].places;
+      costs[n].registration_ms += place.steps[n].registration_ms;
+      costs[n].learning_ms += place.steps[n].learning_ms;
+      costs[n].map_features += static_cast<double>(place.steps[n].map_features);
+    }
+  }
+  for (RegistrationCost& cost : costs) {
+    const auto count = static_cast<double>(cost.places);
+    cost.registration_ms /= count;
+    cost.learning_ms /= count;
+    cost.map_features /= count;
+  }
+  return costs;
+}
+
 void writeRun(const std::string& folder, const RunSettings& settings, const RunOutput& output) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -174,6 +215,7 @@ void writeRun(const std::string& folder, const RunSettings& settings, const RunO
   }
   writeFile(folder + "/errors.csv", errorsCsv(output.records));
   writeFile(folder + "/lives.csv", livesCsv(output.lives));
+  writeFile(folder + "/cost.csv", costCsv(output.costs));
   writeFile(folder + "/summary.json", summaryJson(settings, output));
 }
 

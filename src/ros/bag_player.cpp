@@ -1,5 +1,6 @@
 #include "perennial/ros/bag_player.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <actionlib/client/simple_action_client.h>
@@ -44,12 +45,13 @@ BagPlayerSettings BagPlayerSettings::load(ParameterReader& reader) {
 
 BagPlayer::BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(std::move(nh)),
-      settings_(loadNode<BagPlayerSettings>(private_nh, {})),
+      settings_(loadNode<BagPlayerSettings>(private_nh, {"evaluation"})),
       node_(settings_.mode == "teach" ? "teach_recorder" : "repeat_navigator") {
   try {
     bag_.open(settings_.bag, rosbag::bagmode::Read);
   } catch (const rosbag::BagException& error) {
-    throw Error("bag " + settings_.bag + " cannot be read: " + error.what());
+    throw Error("bag " + settings_.bag + " cannot be read: " + error.what() +
+                (settings_.bag.front() == '/' ? "" : " (nodes run in another folder: give an absolute path)"));
   }
   requireTopics();
   clock_publisher_ = nh_.advertise<rosgraph_msgs::Clock>("/clock", 100);
@@ -87,8 +89,7 @@ void BagPlayer::advertise() {
 
 bool BagPlayer::run() {
   publishClock(rosbag::View(bag_).getBeginTime());
-  const bool success = settings_.mode == "teach" ? teach() : repeat();
-  return success;
+  return settings_.mode == "teach" ? teach() : repeat();
 }
 
 bool BagPlayer::teach() {
@@ -107,8 +108,7 @@ bool BagPlayer::teach() {
     throw Error("teach_recorder does not finish the map");
   }
   const auto result = client.getResult();
-  ROS_INFO("%zu images played: %s", images_, result->message.c_str());
-  return result->success != 0;
+  return ended(result->success != 0, result->message);
 }
 
 bool BagPlayer::repeat() {
@@ -131,8 +131,13 @@ bool BagPlayer::repeat() {
     throw Error("repeat_navigator does not end");
   }
   const auto result = client.getResult();
-  ROS_INFO("%zu images played: %s", images_, result->reason.c_str());
-  return result->success != 0;
+  return ended(result->success != 0, result->reason);
+}
+
+bool BagPlayer::ended(bool success, const std::string& message) const {
+  ROS_LOG(success ? ros::console::levels::Info : ros::console::levels::Error, ROSCONSOLE_DEFAULT_NAME,
+          "%zu images played: %s", images_, message.c_str());
+  return success;
 }
 
 void BagPlayer::awaitStart(const std::function<bool()>& started) {
@@ -157,7 +162,8 @@ void BagPlayer::play(const std::function<bool()>& stop) {
     if (message.getTopic() == settings_.image_topic) {
       const sensor_msgs::ImageConstPtr image = message.instantiate<sensor_msgs::Image>();
       if (!image) {
-        throw Error(settings_.image_topic + " of the bag does not hold sensor_msgs/Image");
+        throw Error(settings_.image_topic + " of the bag holds " + message.getDataType() +
+                    ", not sensor_msgs/Image; compressed images must be unpacked (image_transport republish) first");
       }
       unanswered_.insert(image->header.stamp);
       ++images_;
@@ -206,6 +212,9 @@ bool BagPlayer::waitUntil(const std::function<bool()>& done, double seconds) {
 void BagPlayer::onProcessed(const perennial_nav::Processed& message) {
   if (message.node == node_) {
     unanswered_.erase(message.header.stamp);
+    if (message.has_command) {
+      newest_answered_ = std::max(newest_answered_, message.header.stamp);
+    }
   }
 }
 

@@ -1,6 +1,9 @@
 #include "perennial/ros/parameters.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <variant>
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -47,6 +50,18 @@ ParameterValue converted(XmlRpcValue& value, const std::string& key) {
   }
 }
 
+/// As few digits as give the same number again.
+std::string shortest(double value) {
+  char text[32];
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof(text), "%.*g", digits, value);
+    if (std::strtod(text, nullptr) == value) {
+      break;
+    }
+  }
+  return text;
+}
+
 /// Keys that libraries, not this package, read from a node's private namespace.
 const std::vector<std::string>& libraryKeys() {
   static const std::vector<std::string> keys{"image_transport", "diagnostic_period", "use_fqn", "tcp_nodelay"};
@@ -72,6 +87,24 @@ Parameters readParameters(const ros::NodeHandle& nh, const std::vector<std::stri
     }
   }
   return parameters;
+}
+
+std::string toText(const ParameterValue& value) {
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+    std::string text;
+    for (const double element : *list) {
+      text += (text.empty() ? "" : ", ") + shortest(element);
+    }
+    return "[" + text + "]";
+  }
+  if (const auto* flag = std::get_if<bool>(&value)) {
+    return *flag ? "true" : "false";
+  }
+  if (const auto* whole = std::get_if<int>(&value)) {
+    return std::to_string(*whole);
+  }
+  const auto* real = std::get_if<double>(&value);
+  return real != nullptr ? shortest(*real) : std::get<std::string>(value);
 }
 
 ParameterReader groupReader(const ros::NodeHandle& nh, const std::string& group) {

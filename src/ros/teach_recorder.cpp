@@ -1,7 +1,8 @@
 #include "perennial/ros/teach_recorder.h"
 
+#include <iomanip>
+#include <sstream>
 #include <utility>
-
 
 #include "perennial/core/error.h"
 #include "perennial/core/map_name.h"
@@ -60,8 +61,9 @@ TeachRecorder::TeachRecorder(ros::NodeHandle nh, ros::NodeHandle private_nh)
 
 TeachRecorder::~TeachRecorder() {
   if (session_) {
+    ROS_INFO("the node ends while teaching");
     const perennial_nav::TeachResult result = finish();
-    ROS_INFO("node stops while teaching: %s", result.message.c_str());
+    server_.setPreempted(result, result.message);
   }
 }
 
@@ -119,8 +121,10 @@ perennial_nav::TeachResult TeachRecorder::finish() {
     result.distance_m = summary.distance_m;
     result.local_maps = static_cast<uint32_t>(summary.local_maps);
     result.features = static_cast<uint32_t>(summary.features);
-    result.message = "taught " + std::to_string(summary.local_maps) + " local maps along " +
-                     std::to_string(summary.distance_m) + " m in " + summary.file;
+    std::ostringstream message;
+    message << std::fixed << std::setprecision(2) << "taught " << summary.local_maps << " local maps along "
+            << summary.distance_m << " m in " << summary.file;
+    result.message = message.str();
     ROS_INFO("%s", result.message.c_str());
   } catch (const Error& error) {
     result.message = error.what();

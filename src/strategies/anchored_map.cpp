@@ -77,6 +77,7 @@ void AnchoredMap::configure(ParameterReader& reader) {
   settings_.adding = AddSettings::load(reader);
   settings_.share = reader.real("share", settings_.share, 0.0, 1.0);
   settings_.features_kept = reader.integer("features_kept", settings_.features_kept, 1, 1000000);
+  settings_.features_used = reader.integer("features_used", settings_.features_used, 0, 1000000);
   settings_.taught_share = reader.real("taught_share", settings_.taught_share, 0.0, 1.0);
   settings_.feature_noise_px = reader.real("feature_noise_px", settings_.feature_noise_px, 0.01, 1000.0);
   settings_.cohort_noise_px = reader.real("cohort_noise_px", settings_.cohort_noise_px, 0.01, 1000.0);
@@ -86,6 +87,14 @@ void AnchoredMap::configure(ParameterReader& reader) {
 
 std::size_t AnchoredMap::maxFeatures(std::size_t taught, std::size_t /*seen*/) const {
   return std::max(taught, static_cast<std::size_t>(settings_.features_kept));
+}
+
+Alternatives AnchoredMap::alternatives(const LocalMap& map, double /*stamp_s*/) const {
+  std::vector<double> scores(map.size());
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    scores[i] = map.featureNumbers(i)[kScore];
+  }
+  return {bestFeatures(map, scores, static_cast<std::size_t>(settings_.features_used))};
 }
 
 void AnchoredMap::update(LocalMap& map, const Observation& observation) const {

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
@@ -14,9 +16,11 @@
 #include <rosbag/bag.h>
 #include <sensor_msgs/image_encodings.h>
 
+#include "perennial/core/csv.h"
 #include "perennial/core/dataset.h"
 #include "perennial/core/dataset_track.h"
 #include "perennial/core/error.h"
+#include "perennial/core/utc_time.h"
 
 namespace {
 
@@ -32,6 +36,7 @@ Writes the images of one traversal of a data set (a folder with manifest.csv), w
   --odom-topic NAME    (/odom)
   --from M, --to M     only places from M to M metres: for data sets whose places are of different cameras
   --speed M/S          driven where the data set's stamps are no drive (0.5)
+  --ground-truth FILE  add the images' stamps, places and offsets to this table, for evaluate
   --overwrite          replace OUT.bag if it exists
 
 Exit status: 0 done, 1 an input is bad, 2 the call is wrong.
@@ -42,6 +47,7 @@ struct Options {
   std::string camera;
   std::string image_topic = "/camera/image_raw";
   std::string odom_topic = "/odom";
+  std::string ground_truth;
   double from_m = 0.0;
   double to_m = std::numeric_limits<double>::infinity();
   double speed_m_s = 0.5;
@@ -83,6 +89,8 @@ Options parse(const std::vector<std::string>& arguments) {
       options.image_topic = value();
     } else if (word == "--odom-topic") {
       options.odom_topic = value();
+    } else if (word == "--ground-truth") {
+      options.ground_truth = value();
     } else if (word == "--from") {
       options.from_m = number(word, value());
     } else if (word == "--to") {
@@ -126,6 +134,22 @@ void requireSize(const cv::Mat& image, cv::Size size, const perennial::Dataset& 
   }
 }
 
+/// With the bag's stamps, which need not be the data set's.
+void addGroundTruth(const std::string& file, const std::vector<perennial::DatasetRow>& rows,
+                    const perennial::DatasetTrack& track) {
+  const bool begin = !fs::exists(file);
+  std::ofstream stream(file, std::ios::app);
+  stream << std::setprecision(17) << (begin ? "traversal,stamp,distance_m,offset_px\n" : "");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    stream << perennial::csvField(rows[i].traversal) << "," << perennial::formatUtc(track.image_stamps_s[i]) << ","
+           << rows[i].distance_m << "," << rows[i].offset_px << "\n";
+  }
+  stream.close();
+  if (!stream) {
+    throw perennial::Error(file + " cannot be written");
+  }
+}
+
 int convert(const Options& options) {
   const perennial::Dataset dataset = perennial::loadDataset(options.words[0]);
   std::vector<perennial::DatasetRow> rows;
@@ -161,6 +185,9 @@ int convert(const Options& options) {
   }
   bag.close();
   fs::rename(partial, file);
+  if (!options.ground_truth.empty()) {
+    addGroundTruth(options.ground_truth, rows, track);
+  }
   if (track.stamps_replaced) {
     std::cout << "the data set's stamps are no drive; time runs at " << options.speed_m_s << " m/s\n";
   }

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -18,22 +20,39 @@
 namespace perennial {
 namespace {
 
-constexpr char kUsage[] = R"(usage: report RUN... --out DIR
+constexpr char kUsage[] = R"(usage: report RUN... --out DIR [--site LATITUDE,LONGITUDE]
 
 Compares runs of `evaluate`: folders with errors.csv, lives.csv and summary.json, or folders of such folders. Writes
-report.html, which holds everything, and the figures beside it as PNG and SVG, the tables as CSV.
+report.html, which holds everything, and the figures beside it as PNG and SVG, the tables as CSV. The site, in degrees north and east,
+is where the images were taken: day and night go by the sun's elevation there. Default: that of the embedded park, 50,14.4.
 )";
 
 struct Options {
   std::vector<std::string> folders;
   std::string out;
+  std::string latitude_deg = "50.0";  // of the park
+  std::string longitude_deg = "14.4";
 };
+
+std::string degrees(const std::string& text, double most) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(std::abs(value) <= most)) {
+    throw ParameterError("--site takes LATITUDE,LONGITUDE in degrees; '" + text + "' is none");
+  }
+  return text;
+}
 
 Options parse(const std::vector<std::string>& arguments) {
   Options options;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--out" && i + 1 < arguments.size()) {
       options.out = arguments[++i];
+    } else if (arguments[i] == "--site" && i + 1 < arguments.size()) {
+      const std::string& site = arguments[++i];
+      const std::size_t comma = std::min(site.find(','), site.size());
+      options.latitude_deg = degrees(site.substr(0, comma), 90.0);
+      options.longitude_deg = degrees(site.substr(std::min(comma + 1, site.size())), 180.0);
     } else if (arguments[i].rfind("-", 0) == 0) {
       throw ParameterError("'" + arguments[i] + "' is not understood, or lacks its value");
     } else {
@@ -89,9 +108,10 @@ void writeComparisons(const std::string& file, const std::vector<PairedCompariso
 }
 
 /// Replaces this process by the one that plots.
-[[noreturn]] void plot(const std::string& out, const std::vector<std::string>& runs) {
+[[noreturn]] void plot(const Options& options, const std::vector<std::string>& runs) {
   const std::string script = ros::package::getPath("perennial_nav") + "/scripts/plot_report.py";
-  std::vector<std::string> words = {"/usr/bin/python3", script, out};
+  std::vector<std::string> words = {"/usr/bin/python3", script, options.out, options.latitude_deg,
+                                    options.longitude_deg};
   words.insert(words.end(), runs.begin(), runs.end());
   std::vector<char*> arguments;
   for (std::string& word : words) {
@@ -111,7 +131,7 @@ void report(const Options& options) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   writeComparisons(options.out + "/comparisons.csv", compareAll(runs));
-  plot(options.out, folders);
+  plot(options, folders);
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <opencv2/core/persistence.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "map_test_support.h"
+#include "perennial/core/feature_extractor.h"
 
 namespace perennial {
 namespace {
@@ -105,6 +107,24 @@ TEST_F(MapToolTest, printsHistoryAndRollsBack) {
   EXPECT_TRUE(sameBits(MapFile(file_).read(2), taught_[2]));
 }
 
+TEST_F(MapToolTest, compacts) {
+  for (int i = 0; i < 3; ++i) {
+    MapFile map(file_);
+    map.beginTraversal("score_based/1", 1700200000.0 + i);
+    map.stage(learned_);
+    map.commitTraversal(1700200060.0 + i);
+  }
+  EXPECT_EQ(run("compact " + file_ + " --keep x").status, 2);
+  EXPECT_EQ(run("compact " + file_).status, 0);
+  EXPECT_EQ(MapFile(file_).traversals().size(), 5U) << "fewer than ten: all are kept";
+  const Result compacted = run("compact " + file_ + " --keep 1");
+  EXPECT_EQ(compacted.status, 0) << compacted.output;
+  EXPECT_NE(compacted.output.find("2 traversals merged"), std::string::npos) << compacted.output;
+  EXPECT_EQ(MapFile(file_).traversals().size(), 3U);
+  EXPECT_TRUE(sameBits(MapFile(file_).read(2), learned_));
+  EXPECT_EQ(run("verify " + file_).status, 0);
+}
+
 TEST_F(MapToolTest, exportsEveryBit) {
   const fs::path out(folder_ / "out");
   const Result exported = run("export " + file_ + " --out " + out.string());
@@ -146,6 +166,100 @@ TEST_F(MapToolTest, exportsEveryBit) {
   const Result again = run("export " + file_ + " --out " + out.string());
   EXPECT_EQ(again.status, 1);
   EXPECT_NE(again.output.find("not an empty folder"), std::string::npos) << again.output;
+}
+
+/// A map of the reference system: three local maps of noise, 0.5 m apart.
+class MapImportTest : public testing::Test {
+ protected:
+  MapImportTest() {
+    fs::create_directories(folder_ / "stored");
+    for (int i = 0; i < 3; ++i) {
+      cv::FileStorage storage(fileOf(i), cv::FileStorage::WRITE);
+      storage << "Image" << picture(i, {200, 120}) << "Keypoints"
+              << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
+      storage << "Descriptors" << cv::Mat(1, 32, CV_32F, cv::Scalar(7)) << "Time" << 1500000000 + i;
+    }
+    cv::FileStorage profile(folder_ / "stored/way.yaml", cv::FileStorage::WRITE);
+    profile << "Path"
+            << std::vector<float>{0.0F, 0.5F, 0.0F, 0.0F, 0.6F, 0.5F, 0.1F, 0.0F, 1.2F, 0.0F, 0.0F, 0.0F};
+  }
+
+  std::string fileOf(int i) const {
+    const char* const distances[] = {"000.000", "000.500", "001.000"};
+    return folder_ / (std::string("stored/way_") + distances[i] + ".yaml");
+  }
+
+  static cv::Mat picture(int seed, cv::Size size) {
+    cv::Mat image(size, CV_8UC1);
+    cv::theRNG().state = 9U + static_cast<unsigned>(seed);
+    cv::randu(image, 0, 256);
+    return image;
+  }
+
+  Result import(const std::string& options = "") {
+    return run("import " + folder_ / "stored" + " --out " + folder_ / "way.perennial" + " " + options);
+  }
+  /// Expects to be refused, with this said, and no file left.
+  void expectRefused(const std::string& what) {
+    const Result result = import();
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.output.find(what), std::string::npos) << result.output;
+    EXPECT_FALSE(fs::exists(folder_ / "way.perennial"));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(MapImportTest, makesAMapToDriveWith) {
+  const Result result = import("--encoding rgb8");
+  ASSERT_EQ(result.status, 0) << result.output;
+  const MapFile map(folder_ / "way.perennial");
+  EXPECT_TRUE(map.verify().empty());
+  ASSERT_EQ(map.size(), 3U);
+  EXPECT_EQ(map.metadata().name, "way");
+  EXPECT_EQ(map.metadata().image_encoding, "rgb8");
+  EXPECT_NEAR(map.metadata().length_m, 1.2, 1e-6) << "the end of the profile";
+  EXPECT_EQ(map.metadata().map_interval_m, 0.5);
+  EXPECT_EQ(map.metadata().taught_stamp_s, 1500000000.0);
+  EXPECT_EQ(map.metadata().extraction, ExtractionSettings().describe())
+      << "as the navigator extracts by default";
+  EXPECT_EQ(map.profile().at(0.7).forward, 0.5);
+  EXPECT_NEAR(map.profile().at(0.7).angular, 0.1, 1e-6);
+  const LocalMap second = map.read(1);
+  EXPECT_EQ(second.distance_m, 0.5);
+  EXPECT_EQ(second.stamp_s, 1500000001.0);
+  EXPECT_TRUE(second.features == FeatureExtractor().extract(picture(1, {200, 120})));
+  EXPECT_EQ(cv::norm(map.readImage(1), picture(1, {200, 120}), cv::NORM_INF), 0.0);
+  EXPECT_EQ(import().status, 1) << "a map that exists is not replaced";
+}
+
+TEST_F(MapImportTest, saysWhatItRefuses) {
+  {
+    cv::FileStorage storage(folder_ / "stored/other_000.000.yaml", cv::FileStorage::WRITE);
+    storage << "Image" << picture(0, {200, 120});
+  }
+  expectRefused("several maps; say --name and one of: other, way");
+  fs::remove(folder_ / "stored/other_000.000.yaml");
+  {
+    cv::FileStorage storage(fileOf(2), cv::FileStorage::WRITE);
+    storage << "Image" << picture(2, {200, 100});
+  }
+  expectRefused("way_001.000.yaml: its Image differs in size");
+  {
+    cv::FileStorage storage(fileOf(2), cv::FileStorage::WRITE);
+    storage << "Keypoints" << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
+    storage << "Descriptors" << cv::Mat(1, 32, CV_32F, cv::Scalar(7));
+  }
+  expectRefused("way_001.000.yaml: holds no Image");
+  {
+    cv::FileStorage storage(fileOf(2), cv::FileStorage::WRITE);
+    storage << "Image" << picture(2, {200, 120}) << "Keypoints"
+            << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
+    storage << "Descriptors" << cv::Mat(1, 32, CV_32F, cv::Scalar(0.5));
+  }
+  expectRefused("way_001.000.yaml: Descriptors hold numbers that are no bytes");
+  fs::remove(folder_ / "stored/way.yaml");
+  expectRefused("way.yaml: cannot be read");
 }
 
 TEST_F(MapToolTest, helpsAndRefusesWrongUse) {

@@ -127,6 +127,21 @@ TEST_F(ReplayInputTest, aPlaceWithoutItsMapIsLeftOut) {
   EXPECT_TRUE(hasProblem("manifest.csv:2:", "left out"));
 }
 
+TEST_F(ReplayInputTest, repeatsViewsAsIfTheSameDaysCameAgain) {
+  ReplayInput input = load();
+  repeatViews(input, 8);
+  ASSERT_EQ(input.places[1].views.size(), 8U);
+  ASSERT_EQ(input.rows[1].size(), 8U);
+  EXPECT_EQ(input.rows[1][2].traversal, "0000_t3");
+  EXPECT_EQ(input.rows[1][7].traversal, "0002_t2");
+  EXPECT_EQ(input.groundTruth(1, 7), 20.0);
+  EXPECT_EQ(input.places[1].views[7].stamp_s, input.rows[1][1].stamp_s + 2 * 3 * 86400.0);
+  EXPECT_EQ(input.rows[1][7].stamp_s, input.places[1].views[7].stamp_s);
+  EXPECT_EQ(input.places[1].views[7].features, input.places[1].views[1].features);
+  repeatViews(input, 3);
+  EXPECT_EQ(input.places[0].views.size(), 8U) << "nothing is taken away";
+}
+
 TEST(ParallelFor, doesEachTaskOnceAndPassesErrorsOn) {
   std::vector<int> times(1000, 0);
   parallelFor(times.size(), 4, [&](std::size_t i) { ++times[i]; });

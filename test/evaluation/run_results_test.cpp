@@ -42,11 +42,36 @@ TEST(RunSummary, countsAMissingAnswerAsWrong) {
   EXPECT_EQ(summary.ms_per_registration, 2.0);
 }
 
+TEST(RunSummary, judgesOnlyWhatHasAGroundTruth) {
+  RegistrationRecord unknown = record("a", 0.0, 3.0);
+  unknown.ground_truth_px.reset();
+  EXPECT_FALSE(unknown.error());
+  const RunSummary summary = summarise({unknown, record("b", 0.0, 2.0), record("c", 0.0, std::nullopt)});
+  EXPECT_NEAR(summary.answered, 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(summary.within_px.front().second, 0.5);
+  EXPECT_EQ(*summary.mean_error_px, 2.0);
+}
+
 TEST(RunSummary, hasNoMeanWithoutAnswers) {
   const RunSummary summary = summarise({record("a", 10.0, std::nullopt)});
   EXPECT_EQ(summary.answered, 0.0);
   EXPECT_FALSE(summary.mean_error_px || summary.median_error_px || summary.mean_signed_error_px);
   EXPECT_EQ(*summarise({record("a", 0.0, 1.0), record("b", 0.0, 2.0)}).median_error_px, 1.5);
+}
+
+TEST(RunOutput, costsAreMeansOverThePlaces) {
+  PlaceReplayResult often;
+  often.steps = {{1.0, 9, 9, 500, 1.0, 4.0}, {1.0, 9, 9, 600, 3.0, 0.0}};
+  PlaceReplayResult once;
+  once.steps = {{std::nullopt, 0, 0, 100, 2.0, 0.0}};
+  const std::vector<RegistrationCost> costs = costsOf({often, once});
+  ASSERT_EQ(costs.size(), 2U);
+  EXPECT_EQ(costs[0].places, 2U);
+  EXPECT_EQ(costs[0].registration_ms, 1.5);
+  EXPECT_EQ(costs[0].learning_ms, 2.0);
+  EXPECT_EQ(costs[0].map_features, 300.0);
+  EXPECT_EQ(costs[1].places, 1U);
+  EXPECT_EQ(costs[1].registration_ms, 3.0);
 }
 
 TEST(RunOutput, isReadBackExactly) {
@@ -55,7 +80,7 @@ TEST(RunOutput, isReadBackExactly) {
   settings.set("registration/ratio=0.8");
   const double found = 1.0 / 3.0;
   RunOutput output{
-      "some \"input\"", {record("a,b", 0.1, found), record("c", 0.0, std::nullopt)}, {{0, 3}, {5}}, 4.5};
+      "some \"input\"", {record("a,b", 0.1, found), record("c", 0.0, std::nullopt)}, {{0, 3}, {5}}, {}, 4.5};
   EXPECT_FALSE(isComplete(folder / "run", settings, output.input));
   writeRun(folder / "run", settings, output);
   EXPECT_TRUE(isComplete(folder / "run", settings, output.input));

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Teaching from one bag and registering another through the nodes gives what the core computes in one process."""
 import csv
+import json
 import os
 import shutil
 import subprocess
@@ -34,20 +35,21 @@ def write_png(path, image):
         file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
-def make_dataset(folder):
-    """Two traversals of 12 places; the second with the camera turned, other noise and other light."""
+def make_dataset(folder, traversals=("first", "second")):
+    """Traversals of 12 places, months apart; after the first with the camera turned, other noise and other light."""
     os.makedirs(folder)
     random = np.random.RandomState(5)
     with open(os.path.join(folder, "manifest.csv"), "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["traversal", "stamp", "distance_m", "image", "offset_px"])
-        for traversal, light in (("first", 1.0), ("second", 0.8)):
+        for number, traversal in enumerate(traversals):
+            light = 1.0 - 0.2 * number
             for place in range(12):
-                left_px = 0 if traversal == "first" else 5 * place - 30
+                left_px = number * (5 * place - 30)
                 image = view(2.0 * place, left_px) * light + random.normal(0.0, 3.0, (200, 320))
                 name = "%s_%02d.png" % (traversal, place)
                 write_png(os.path.join(folder, name), np.clip(image, 0, 255).astype(np.uint8))
-                stamp = "2026-%s-01T12:00:%02dZ" % ("03" if traversal == "first" else "09", place * 4)
+                stamp = "2026-%02d-01T12:00:%02dZ" % (3 + 3 * number, place * 4)
                 writer.writerow([traversal, stamp, "%.1f" % (0.5 * place), name, left_px])
 
 
@@ -128,6 +130,43 @@ class Bags(unittest.TestCase):
         # blind, and there would be nothing to compare.
         _, images = self.compare(dataset, "season_00", "season_01", "stromovka", min_inliers=1)
         self.assertEqual(images, 40)
+
+    def test_evaluate_by_nodes_and_in_one_process(self):
+        """Two traversals after the teaching, the map learning from each: the same errors.csv from bags through the nodes
+        as from the bags in one process."""
+        dataset = os.path.join(FOLDER, "evaluated")
+        make_dataset(dataset, ("first", "second", "third"))
+        truth = os.path.join(FOLDER, "truth.csv")
+        bags = []
+        for traversal in ("first", "second", "third"):
+            bags.append(os.path.join(FOLDER, "evaluated_%s.bag" % traversal))
+            call("rosrun", "perennial_nav", "dataset_to_bag", dataset, traversal, bags[-1], "--ground-truth", truth)
+        out = os.path.join(FOLDER, "one_process")
+        call("rosrun", "perennial_nav", "evaluate", *bags, "--ground-truth", truth, "--strategy", "score_based",
+             "--set", "exchange=0.2", "--out", out, "--cache", os.path.join(FOLDER, "cache"))  # fmt: skip
+        with open(os.path.join(out, "errors.csv"), newline="") as stream:
+            expected = list(csv.DictReader(stream))
+        self.assertEqual(len(expected), 24)
+
+        config = os.path.join(FOLDER, "manager.yaml")
+        with open(config, "w") as stream:
+            yaml.safe_dump({"score_based": {"exchange": 0.2}}, stream)
+        common = ["map:=evaluated", "map_folder:=" + os.path.join(FOLDER, "maps")]
+        call("roslaunch", "perennial_nav", "teach.launch", "bag:=" + bags[0], *common)
+        for index, bag in enumerate(bags[1:]):
+            nodes = os.path.join(FOLDER, "nodes_%d" % index)
+            call("roslaunch", "perennial_nav", "evaluate.launch", "bag:=" + bag, "ground_truth:=" + truth, "out:=" + nodes,
+                 "strategy:=score_based", "manager_config:=" + config, *common)  # fmt: skip
+            with open(os.path.join(nodes, "errors.csv"), newline="") as stream:
+                found = list(csv.DictReader(stream))
+            self.assertEqual(found, expected[12 * index:12 * index + 12], "to the last digit")
+            with open(os.path.join(nodes, "summary.json"), encoding="utf-8") as stream:
+                summary = json.load(stream)
+            self.assertEqual(summary["strategy"], "score_based")
+            self.assertEqual(summary["settings"]["exchange"], "0.2")
+            self.assertEqual(summary["registrations"], 12)
+            self.assertEqual(summary["within_px"]["35"], 1)
+            self.assertIsNone(summary["ms_per_registration"])
 
     def test_a_bag_without_images(self):
         dataset = os.path.join(FOLDER, "made_up_2")

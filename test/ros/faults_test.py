@@ -47,7 +47,14 @@ class Stack:
 
     @staticmethod
     def done(client):
-        return client.simple_state == actionlib.SimpleGoalState.DONE
+        # The client's simple state may be overtaken: its threads set it in any order.
+        return client.gh is None or client.gh.get_comm_state() == actionlib.CommState.DONE
+
+    def end(self, client):
+        """Ends a goal, by its name: cancelling all goals may arrive late, and end the next one."""
+        if not self.done(client):
+            client.cancel_goal()
+        wait_until(lambda: self.done(client), "the end of the goal")
 
     def start(self, client, goal):
         client.send_goal(goal)
@@ -94,9 +101,8 @@ class Faults(unittest.TestCase):
         assert result.success, result.message
 
     def tearDown(self):
-        self.stack.repeat.cancel_all_goals()
-        self.stack.teach.cancel_all_goals()
-        wait_until(lambda: self.stack.done(self.stack.repeat), "the end of the goal")
+        self.stack.end(self.stack.repeat)
+        self.stack.end(self.stack.teach)
 
     def repeated(self, name="path", **goal):
         self.stack.begin_repeat(name, **goal)
@@ -163,12 +169,16 @@ class Faults(unittest.TestCase):
     # --- cancelling and losing sensors ---
 
     def test_cancelling_stops_the_robot_and_teaches_nothing(self):
+        with open(os.path.join(FOLDER, "path.perennial"), "rb") as stored:
+            before = stored.read()
         self.interrupted()
         self.stack.repeat.cancel_goal()
         result = self.stack.result(self.stack.repeat)
         self.assertFalse(result.success)
         self.assertIn("cancelled", result.reason)
         self.assert_stopped()
+        with open(os.path.join(FOLDER, "path.perennial"), "rb") as stored:
+            self.assertEqual(stored.read(), before)
 
     def test_stops_without_images_and_goes_on_with_them(self):
         self.interrupted()
@@ -306,7 +316,9 @@ class Faults(unittest.TestCase):
             self.robot.step(BOTH)
         self.stack.teach.cancel_goal()
         result = self.stack.result(self.stack.teach)
-        self.assertTrue(result.local_maps > 0 or not result.success, result.message)
+        self.assertTrue(result.success, result.message)
+        # Every 0.2 m, but for the 0.25 m without images that fit.
+        self.assertEqual(result.local_maps, 6)
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ struct ReplayStep {
   int matches = 0;
   std::size_t map_features = 0;  ///< features of the local map when the view was registered, used or not
   double registration_ms = 0.0;  ///< choosing the features and registering, processor time of this thread
+  double learning_ms = 0.0;      ///< likewise; 0 where nothing was learned
 };
 
 /// How long features live: `dropped[n]` were dropped by the n-th traversal after the one that brought them,

@@ -43,12 +43,28 @@ struct ReplayInput {
   }
 };
 
+/// Where features come from.
+struct FeatureSource {
+  ExtractionSettings extraction;
+  /// The features that are stored in local maps of the reference system, instead of extracting any from their
+  /// images. A data set with a manifest has none.
+  bool stored = false;
+
+  /// Under what they are cached: equal for equal results.
+  std::string describe() const { return stored ? "stored" : extraction.describe(); }
+};
+
 /// Reads and extracts all images, in parallel, by way of the cache. An image that cannot be read or differs
 /// in size from the taught one is left out, a place whose taught image fails altogether; both are said in
 /// `problems`. `progress` is called with the number of images done, from several threads one at a time.
 ReplayInput loadReplayInput(const Dataset& dataset, const std::vector<SelectedPlace>& places,
-                            const ExtractionSettings& extraction, const FeatureCache& cache, unsigned threads,
+                            const FeatureSource& source, const FeatureCache& cache, unsigned threads,
                             std::vector<std::string>& problems,
                             const std::function<void(std::size_t)>& progress);
+
+/// Repeats the views of each place until there are `count` of them, as if the same days came again: each
+/// round is later by whole days, and its number stands before the traversals' names ("0002_name"). Places
+/// with as many views keep theirs.
+void repeatViews(ReplayInput& input, std::size_t count);
 
 }  // namespace perennial

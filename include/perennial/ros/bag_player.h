@@ -42,18 +42,25 @@ class BagPlayer {
   /// Plays it all; true when the map was taught or the path repeated. Throws Error when the nodes do not answer.
   bool run();
 
+  /// Serves callbacks until `done`; false after `seconds` of real time.
+  bool waitUntil(const std::function<bool()>& done, double seconds);
+
+  /// Stamp of the last image that the nodes worked on as part of the goal.
+  ros::Time newestAnswered() const { return newest_answered_; }
+  const BagPlayerSettings& settings() const { return settings_; }
+
  private:
   bool teach();
   bool repeat();
   void requireTopics() const;
   void advertise();
   void publishClock(const ros::Time& time);
+  /// Says how it went; returns `success`.
+  bool ended(bool success, const std::string& message) const;
   /// A message played before the node works on the goal would be lost.
   void awaitStart(const std::function<bool()>& started);
   /// `stop`: asked between messages whether playing on makes no sense.
   void play(const std::function<bool()>& stop);
-  /// Serves callbacks until `done`; false after `patience_s`.
-  bool waitUntil(const std::function<bool()>& done, double seconds);
   void onProcessed(const perennial_nav::Processed& message);
 
   ros::NodeHandle nh_;
@@ -65,6 +72,7 @@ class BagPlayer {
   ros::Subscriber processed_subscriber_;
   std::set<ros::Time> unanswered_;
   ros::Time clock_;
+  ros::Time newest_answered_;
   std::size_t images_ = 0;
 };
 

@@ -15,6 +15,9 @@ namespace perennial {
 /// Throws ParameterError for values of a type that no parameter has.
 Parameters readParameters(const ros::NodeHandle& nh, const std::vector<std::string>& known_groups = {});
 
+/// As it stands in YAML: "true", "5", "0.05", "[1, 2]".
+std::string toText(const ParameterValue& value);
+
 /// A reader of the parameters in group `group` of `nh`, whose errors name the full key.
 ParameterReader groupReader(const ros::NodeHandle& nh, const std::string& group);
 

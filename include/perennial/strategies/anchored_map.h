@@ -31,6 +31,7 @@ class AnchoredMap : public MapStrategy {
     AddSettings adding;
     double share = 0.7;             ///< of the view's features, added per traversal, 0..1
     int features_kept = 1500;       ///< the map grows to this size before anything is dropped
+    int features_used = 0;          ///< the best scores are used; 0: all features
     double taught_share = 0.5;      ///< of the taught features, those with the best scores are never dropped
     double feature_noise_px = 2.0;  ///< standard deviation of a feature's place in an image
     double cohort_noise_px =
@@ -46,6 +47,7 @@ class AnchoredMap : public MapStrategy {
   /// correctly. The map's own numbers: cohorts so far, features that were taught.
   std::size_t numbersPerFeature() const override { return 5; }
   std::size_t maxFeatures(std::size_t taught, std::size_t seen) const override;
+  Alternatives alternatives(const LocalMap& map, double stamp_s) const override;
   void update(LocalMap& map, const Observation& observation) const override;
 
  private:

@@ -201,6 +201,40 @@ TEST_P(StrategyConformance, keepsInvariantsOverAThousandUpdates) {
   EXPECT_GT(learned, 500) << "the map was lost: most views could not be registered any more";
 }
 
+TEST_P(StrategyConformance, keepsInvariantsWhateverHappens) {
+  // A thousand events drawn at random for each of two seeds: views of any size, empty ones, such as show another
+  // place, wrong displacements, time that stands still, jumps and goes back.
+  for (unsigned seed = 21; seed < 23; ++seed) {
+    const auto strategy = create();
+    SyntheticPlace place(seed);
+    SyntheticPlace elsewhere(seed + 100);
+    LocalMap map = place.teach(kStart, kTaught);
+    adopt(map, *strategy);
+    double stamp_s = kStart;
+    for (int event = 0; event < 1000; ++event) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", event " + std::to_string(event));
+      const double kind = place.uniform(0.0, 1.0);
+      stamp_s += kind < 0.1 ? 0.0 : kind < 0.2 ? place.uniform(-1e7, 1e7) : place.uniform(60.0, 57600.0);
+      const auto seen = static_cast<std::size_t>(place.uniform(0.0, 1.0) < 0.1 ? 0.0 : place.uniform(1.0, kSeen));
+      const double dx = place.uniform(-60.0, 60.0);
+      SyntheticPlace& visited = kind > 0.9 ? elsewhere : place;
+      ASSERT_NO_FATAL_FAILURE(expectValidAlternatives(*strategy, map, stamp_s));
+      Observation observation = observe(*strategy, map, visited.view(stamp_s, dx, seen), stamp_s);
+      if (!observation.registration.displacement_px && kind < 0.5) {
+        continue;
+      }
+      // A wrong answer is one too.
+      observation.registration.displacement_px =
+          observation.registration.displacement_px.value_or(place.uniform(-300.0, 300.0));
+      const LocalMap before = map;
+      ASSERT_NO_THROW(strategy->update(map, observation));
+      ASSERT_NO_FATAL_FAILURE(expectContinuity(before, map, observation.view));
+      ASSERT_LE(map.size(), strategy->maxFeatures(kTaught, kSeen));
+      ASSERT_FALSE(map.features.empty()) << "a map without features is lost for ever";
+    }
+  }
+}
+
 TEST_P(StrategyConformance, isDeterministicAndKeepsItsStateInTheMap) {
   // One instance works through all traversals; a new one takes over from a copy of the map at each of them,
   // as after saving, a restart and loading.

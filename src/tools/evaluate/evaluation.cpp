@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "perennial/evaluation/parallel.h"
+#include "perennial/ros/bag_dataset.h"
 #include "tools/evaluate/progress.h"
 
 namespace perennial {
 
 bool Evaluation::run() {
   const std::vector<RunSettings> runs = checkedRuns();
-  const Dataset dataset = loadDataset(options_.dataset);
+  const Dataset dataset = loadDataset(inputFolder());
   const std::vector<SelectedPlace> places = selectPlaces(dataset, options_.selection, problems_);
   std::map<std::string, std::vector<RunSettings>> by_extraction;
   for (const RunSettings& run : runs) {
@@ -26,6 +27,15 @@ bool Evaluation::run() {
     std::cerr << "evaluate: " << problem << "\n";
   }
   return problems_.empty();
+}
+
+std::string Evaluation::inputFolder() {
+  if (options_.bags.empty()) {
+    return options_.dataset;
+  }
+  const std::string folder = options_.out + "/dataset";
+  writeBagDataset(options_.bags, options_.image_topic, options_.ground_truth, folder, problems_);
+  return folder;
 }
 
 std::vector<RunSettings> Evaluation::checkedRuns() {
@@ -63,7 +73,9 @@ std::string Evaluation::folderOf(const RunSettings& run) const {
 std::string Evaluation::inputName(const Dataset& dataset) const {
   return dataset.manifest + " (" + std::to_string(dataset.rows.size()) +
          " images) teach=" + options_.selection.teach + " from=" + options_.selection.from +
-         " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first);
+         " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first) +
+         (options_.repeat > 0 ? " repeat=" + std::to_string(options_.repeat) : "") +
+         (options_.stored_features ? " stored features" : "");
 }
 
 void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>& places,
@@ -73,9 +85,10 @@ void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>
     images += place.rows.size();
   }
   Progress extracting("features of images", images);
-  const ReplayInput input =
-      loadReplayInput(dataset, places, runs.front().extraction(), cache_, options_.threads, problems_,
-                      [&](std::size_t done) { extracting.show(done); });
+  ReplayInput input =
+      loadReplayInput(dataset, places, {runs.front().extraction(), options_.stored_features}, cache_,
+                      options_.threads, problems_, [&](std::size_t done) { extracting.show(done); });
+  repeatViews(input, options_.repeat);
 
   Progress replaying(std::to_string(runs.size()) + " runs", runs.size() * input.places.size());
   std::vector<std::vector<PlaceReplayResult>> results(runs.size(),
@@ -106,6 +119,7 @@ void Evaluation::write(const RunSettings& run, const ReplayInput& input,
   for (const PlaceReplayResult& place : places) {
     output.lives.add(place.lives);
   }
+  output.costs = costsOf(places);
   output.ms_per_extraction = input.ms_per_extraction;
   writeRun(folderOf(run), run, output);
 }

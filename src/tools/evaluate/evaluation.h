@@ -24,6 +24,8 @@ class Evaluation {
   bool run();
 
  private:
+  /// The data set's folder; that of bags is made first, beside the results.
+  std::string inputFolder();
   /// All runs, every setting of which was tried, so that a typo in the last one shows at once.
   std::vector<RunSettings> checkedRuns();
   std::shared_ptr<MapStrategy> create(const RunSettings& run);
