@@ -9,7 +9,13 @@ foreach(name cameleon cameleon_stop teleop)
 endforeach()
 add_rostest(ros/drivers/check_steering.test DEPENDENCIES check_steering_node)
 if(TARGET tara_camera_node)
-  add_rostest(ros/drivers/tara.test DEPENDENCIES tara_camera_node tara_simulator_node perennial_tara_preload)
+  perennial_gtest(tara_devices_test ros/drivers/tara_devices_test.cpp)
+  if(TARGET tara_devices_test)
+    target_link_libraries(tara_devices_test perennial_tara)
+  endif()
+  foreach(name tara tara_setup)
+    add_rostest(ros/drivers/${name}.test DEPENDENCIES tara_camera_node tara_simulator_node perennial_tara_preload)
+  endforeach()
 endif()
 execute_process(
   COMMAND /usr/bin/python3 -c "import gi; gi.require_version('GstRtspServer', '1.0')"
@@ -22,6 +28,7 @@ elseif(TARGET cameleon_video_node)
 endif()
 if(TARGET tara_camera_node AND TARGET park_simulator_node)
   add_rostest(ros/drivers/cameleon_park.test
+    ARGS folder:=${scratch}/cameleon_park demo:=${PROJECT_SOURCE_DIR}/scripts/park_demo
     DEPENDENCIES cameleon_driver_node cameleon_simulator_node map_manager_node park_simulator_node perennial_strategies
                  perennial_tara_preload repeat_navigator_node tara_camera_node tara_simulator_node teach_recorder_node)
 endif()

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/map/local_map_codec.h"
 #include "perennial/core/error.h"
 #include "perennial/core/learning.h"
 
@@ -97,9 +98,12 @@ void MapManager::learn(std::uint32_t before_index) {
   while (!pending_.empty() && pending_.begin()->first < before_index) {
     const auto& [index, pending] = *pending_.begin();
     LocalMap map = readForStrategy(index);
+    const Bytes before = encodeLocalMap(map);
     perennial::learn(map, *strategy_, pending.observation);
-    file_.stage(map);
-    ++updated_;
+    if (encodeLocalMap(map) != before) {  // a map that nothing changes must not grow
+      file_.stage(map);
+      ++updated_;
+    }
     pending_.erase(pending_.begin());
   }
   learned_before_ = std::max(learned_before_, before_index);

@@ -48,9 +48,29 @@ auto parsed(const std::string& content, const std::string& file, const Read& rea
   }
 }
 
-void readImage(const cv::FileNode& node, const std::string& file, ReferenceLocalMap& map) {
-  cv::Mat image;
-  node >> image;
+/// A matrix that has the numbers it claims to have: OpenCV would allocate first, whatever the file says.
+cv::Mat readMatrix(const cv::FileStorage& storage, const std::string& name, const std::string& file) {
+  const cv::FileNode node = storage[name];
+  if (node.empty()) {
+    return cv::Mat();
+  }
+  const cv::FileNode rows = node["rows"];
+  const cv::FileNode cols = node["cols"];
+  const bool sized =
+      rows.isInt() && cols.isInt() && static_cast<int>(rows) >= 0 && static_cast<int>(cols) >= 0;
+  const std::size_t claimed = sized ? static_cast<std::size_t>(static_cast<int>(rows)) *
+                                          static_cast<std::size_t>(static_cast<int>(cols))
+                                    : 0;
+  if (!sized || claimed > node["data"].size()) {
+    throw DatasetError(file + ": " + name + " is no matrix, or has fewer numbers than rows and columns");
+  }
+  cv::Mat matrix;
+  node >> matrix;
+  return matrix;
+}
+
+void readImage(const cv::FileStorage& storage, const std::string& file, ReferenceLocalMap& map) {
+  const cv::Mat image = readMatrix(storage, "Image", file);
   if (image.empty()) {
     return;
   }
@@ -93,8 +113,7 @@ void readFeatures(const cv::FileStorage& storage, const std::string& file, Refer
   if (!storage["Keypoints"].empty()) {
     cv::read(storage["Keypoints"], keypoints);
   }
-  cv::Mat stored;
-  storage["Descriptors"] >> stored;
+  const cv::Mat stored = readMatrix(storage, "Descriptors", file);
   if (static_cast<std::size_t>(stored.rows) != keypoints.size()) {
     throw DatasetError(file + ": has " + std::to_string(keypoints.size()) + " Keypoints, but " +
                        std::to_string(stored.rows) + " Descriptors");
@@ -169,7 +188,7 @@ ReferenceLocalMap readReferenceMap(const std::string& file) {
 ReferenceLocalMap decodeReferenceMap(const std::string& content, const std::string& file) {
   return parsed(content, file, [&](const cv::FileStorage& storage) {
     ReferenceLocalMap map;
-    readImage(storage["Image"], file, map);
+    readImage(storage, file, map);
     readFeatures(storage, file, map);
     map.stamp_s = timeIn(content, file);
     if (map.image.empty() && map.features.empty()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "perennial/core/error.h"
 
@@ -91,12 +92,23 @@ Velocity ParkSimulation::driverCommand() {
 }
 
 ParkFrame ParkSimulation::step() {
-  ParkFrame frame;
-  for (int i = 0; i < settings_.odometry_rate_hz / settings_.image_rate_hz; ++i) {
-    now_ns_ = tickNs(++tick_);
-    robot_.advance(now_ns_);
-    frame.odometry.push_back(robot_.odometry());
+  std::vector<Odometry> odometry;
+  for (int i = 0; i < ticksPerImage(); ++i) {
+    odometry.push_back(tick());
   }
+  ParkFrame frame = look();
+  frame.odometry = std::move(odometry);
+  return frame;
+}
+
+Odometry ParkSimulation::tick() {
+  now_ns_ = tickNs(++tick_);
+  robot_.advance(now_ns_);
+  return robot_.odometry();
+}
+
+ParkFrame ParkSimulation::look() {
+  ParkFrame frame;
   if (!exposure_settled_) {
     settleExposure();
   }

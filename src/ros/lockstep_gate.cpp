@@ -14,9 +14,11 @@ bool sameCommand(const geometry_msgs::Twist& a, const geometry_msgs::Twist& b) {
 
 }  // namespace
 
-LockstepGate::LockstepGate(const std::vector<std::string>& nodes) : nodes_(nodes.begin(), nodes.end()) {}
+LockstepGate::LockstepGate(const std::vector<std::string>& nodes, bool through_drivers)
+    : nodes_(nodes.begin(), nodes.end()), through_drivers_(through_drivers) {}
 
 void LockstepGate::expect(const ros::Time& stamp) {
+  last_stamp_ = stamp_;
   stamp_ = stamp;
   announced_.reset();
   pending_.clear();
@@ -32,14 +34,18 @@ void LockstepGate::onProcessed(const perennial_nav::Processed& message) {
     return;
   }
   absent_.erase(message.node);
-  if (message.header.stamp != stamp_) {
+  if (!answers(message.header.stamp)) {
     return;  // a late answer to an image that was given up on
   }
   pending_.erase(message.node);
-  if (message.has_command != 0) {
+  if (message.has_command != 0 && !through_drivers_) {
     announced_ = message.command;
     announced_by_ = message.node;
   }
+}
+
+bool LockstepGate::answers(const ros::Time& stamp) const {
+  return through_drivers_ ? stamp > last_stamp_ : stamp == stamp_;
 }
 
 void LockstepGate::onCommand(const geometry_msgs::Twist& command) { newest_ = command; }

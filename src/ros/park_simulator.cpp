@@ -106,6 +106,7 @@ ParkSimulatorSettings ParkSimulatorSettings::load(ParameterReader& reader) {
   s.base_frame = reader.text("base_frame", s.base_frame);
   s.camera_frame = reader.text("camera_frame", s.camera_frame);
   s.drive = reader.boolean("drive", s.drive);
+  s.through_drivers = reader.boolean("through_drivers", s.through_drivers);
   return s;
 }
 
@@ -114,7 +115,7 @@ ParkSimulator::ParkSimulator(ros::NodeHandle nh, ros::NodeHandle private_nh)
       private_nh_(std::move(private_nh)),
       settings_(loadNode<ParkSimulatorSettings>(private_nh_, {"park", "conditions"})),
       simulation_(loadGroup<park::ParkSettings>(private_nh_, "park"), loadConditions(private_nh_)),
-      gate_(settings_.lockstep),
+      gate_(settings_.lockstep, settings_.through_drivers),
       transport_(nh_),
       camera_publisher_(transport_.advertiseCamera("image_raw", 10)),
       diagnostics_(nh_, private_nh_) {
@@ -122,7 +123,8 @@ ParkSimulator::ParkSimulator(ros::NodeHandle nh, ros::NodeHandle private_nh)
   odometry_publisher_ = nh_.advertise<nav_msgs::Odometry>("odom", 1000);
   truth_publisher_ = nh_.advertise<nav_msgs::Odometry>("ground_truth", 1000);
   loop_publisher_ = nh_.advertise<nav_msgs::Path>("loop_path", 1, true);
-  command_publisher_ = nh_.advertise<geometry_msgs::Twist>("cmd_vel", 100);
+  command_publisher_ =
+      nh_.advertise<geometry_msgs::Twist>(settings_.through_drivers ? "driver_cmd_vel" : "cmd_vel", 100);
   command_subscriber_ = nh_.subscribe("cmd_vel", 100, &ParkSimulator::onCommand, this);
   processed_subscriber_ = nh_.subscribe<perennial_nav::Processed>(
       "processed", 1000,
@@ -146,13 +148,14 @@ void ParkSimulator::run(const std::function<bool()>& stop) {
 }
 
 void ParkSimulator::step() {
-  if (simulation_.driverDrives()) {
+  if (settings_.through_drivers) {
+    runThroughDrivers();
+  } else if (simulation_.driverDrives()) {
     drive();
   }
-  const park::ParkFrame frame = simulation_.step();
+  const park::ParkFrame frame = settings_.through_drivers ? simulation_.look() : simulation_.step();
   for (const park::Odometry& odometry : frame.odometry) {
-    publishClock(odometry.stamp_ns);
-    publishOdometry(odometry);
+    publishTick(odometry);
   }
   publishTruth(frame);
   gate_.expect(timeOf(frame.stamp_ns));
@@ -160,9 +163,32 @@ void ParkSimulator::step() {
   lateral_m_ = frame.lateral_m;
   if (settings_.lockstep.empty()) {
     keepPace();
-  } else {
+  } else if (!settings_.through_drivers) {
     awaitAnswers();
   }
+}
+
+/// Time up to the next image, tick by tick, so that the clocks of the drivers tick in between. The last image
+/// is answered on the way and not before: its odometry comes with the robot's next status. A node that has
+/// not answered by then makes time run slowly, and stand still before the next image.
+void ParkSimulator::runThroughDrivers() {
+  constexpr double kTimeForMessagesS = 0.003;
+  const ros::WallDuration kPatience(0.2);
+  constexpr int kTicksUntilAnswer = 3;  // one loop of the robot, 40 ms
+  const double tick_s = 1.0 / (simulation_.settings().odometry_rate_hz * settings_.real_time_factor);
+  const ros::WallDuration pause(settings_.lockstep.empty() ? 0.5 * tick_s : kTimeForMessagesS);
+  const auto never = [] { return false; };
+  for (int i = 0; i < simulation_.ticksPerImage(); ++i) {
+    if (simulation_.driverDrives()) {
+      drive();
+    }
+    publishTick(simulation_.tick());
+    serveUntil(never, ros::WallTime::now() + pause);
+    if (i >= kTicksUntilAnswer && !settings_.lockstep.empty()) {
+      serveUntil([this] { return gate_.open(); }, ros::WallTime::now() + kPatience);
+    }
+  }
+  awaitAnswers();
 }
 
 /// Time stands still until those in lockstep are connected, so that none misses the first image. The clock is
@@ -171,8 +197,10 @@ void ParkSimulator::awaitNodes() {
   constexpr double kClockIntervalS = 0.1;
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(settings_.lockstep_timeout_s);
   const auto connected = [this] {
-    return processed_subscriber_.getNumPublishers() >= settings_.lockstep.size() &&
-           camera_publisher_.getNumSubscribers() >= settings_.lockstep.size();
+    const std::size_t cameras = settings_.through_drivers ? 1 : settings_.lockstep.size();
+    return settings_.lockstep.empty() ||
+           (processed_subscriber_.getNumPublishers() >= settings_.lockstep.size() &&
+            camera_publisher_.getNumSubscribers() >= cameras);
   };
   do {
     publishClock(simulation_.nowNs());
@@ -215,7 +243,7 @@ bool ParkSimulator::serveUntil(const std::function<bool()>& done, const ros::Wal
 
 void ParkSimulator::onCommand(const geometry_msgs::Twist& message) {
   gate_.onCommand(message);
-  if (simulation_.driverDrives()) {
+  if (simulation_.driverDrives() && !settings_.through_drivers) {
     return;  // The driver's own commands come by here, too; the robot has them already.
   }
   try {
@@ -228,7 +256,9 @@ void ParkSimulator::onCommand(const geometry_msgs::Twist& message) {
 
 void ParkSimulator::drive() {
   const Velocity velocity = simulation_.driverCommand();
-  simulation_.command(velocity);
+  if (!settings_.through_drivers) {
+    simulation_.command(velocity);
+  }
   command_publisher_.publish(toMessage(velocity));
   if (simulation_.driverFinished()) {
     ROS_INFO("the driver is round the loop");
@@ -260,6 +290,11 @@ void ParkSimulator::publishClock(std::int64_t stamp_ns) {
   rosgraph_msgs::Clock message;
   message.clock = timeOf(stamp_ns);
   clock_publisher_.publish(message);
+}
+
+void ParkSimulator::publishTick(const park::Odometry& odometry) {
+  publishClock(odometry.stamp_ns);
+  publishOdometry(odometry);
 }
 
 void ParkSimulator::publishOdometry(const park::Odometry& odometry) {

@@ -52,11 +52,8 @@ cv::Mat scene(const cv::Size& size) {
 }
 
 ExtractionSettings extraction(int features, bool spread) {
-  ExtractionSettings settings;
+  ExtractionSettings settings = spread ? ExtractionSettings() : ExtractionSettings::published();
   settings.features = features;
-  settings.half_resolution = spread;
-  settings.bucket_columns = spread ? 16 : 1;
-  settings.bucket_rows = spread ? 8 : 1;
   return settings;
 }
 

@@ -116,4 +116,14 @@ void rollBack(const std::string& file, std::uint32_t traversal, std::ostream& ou
       << " traversals forgotten; the newest is now " << traversal << "\n";
 }
 
+void compactMap(const std::string& file, std::uint32_t keep, std::ostream& out) {
+  MapFile map(file);
+  const std::size_t traversals = map.traversals().size();
+  const std::uint64_t before = map.sizes().file_bytes;
+  map.compact(keep);
+  out << "map '" << file << "': " << traversals - map.traversals().size()
+      << " traversals merged into others, " << megabytes(before) << " before, "
+      << megabytes(map.sizes().file_bytes) << " now\n";
+}
+
 }  // namespace perennial

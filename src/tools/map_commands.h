@@ -23,6 +23,9 @@ void printHistory(const std::string& file, std::ostream& out);
 /// Forgets what was learned after a traversal.
 void rollBack(const std::string& file, std::uint32_t traversal, std::ostream& out);
 
+/// Merges all but the newest `keep` traversals and gives the room that they took back.
+void compactMap(const std::string& file, std::uint32_t keep, std::ostream& out);
+
 /// Writes images as PNG, features and local maps as CSV, metadata and profile as YAML into a folder, which
 /// must be empty or not exist. Numbers are written so that reading them gives the same bits.
 void exportMap(const std::string& file, const std::string& folder, std::ostream& out);

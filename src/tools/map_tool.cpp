@@ -26,6 +26,9 @@ usage: map_tool list FILE             local maps: index, distance, time of teach
        map_tool verify FILE           reads everything and lists what is damaged
        map_tool history FILE          traversals that the map has learned from; 0 is the teaching
        map_tool rollback FILE --to N  forgets everything learned after traversal N
+       map_tool compact FILE [--keep N]
+                                      makes the file smaller: the newest N (default 10) traversals stay and can be
+                                      rolled back to, what was learned before becomes one traversal, number 1
        map_tool export FILE [--out FOLDER]
                                       images as PNG, features as CSV, profile and metadata as YAML, into a new or
                                       empty folder (default: the map's name with _export, in the current folder)
@@ -36,8 +39,8 @@ usage: map_tool list FILE             local maps: index, distance, time of teach
                                       images, because those of another extractor cannot be compared with ours.
                                       ENCODING is that of the camera to drive with (mono8; bgr8 for coloured images)
 
-FILE is the file of a map (*.perennial). Nothing but rollback changes it; import writes
-a new one. Needs no ROS master.
+FILE is the file of a map (*.perennial). Nothing but rollback and compact changes it; import
+writes a new one. Needs no ROS master.
 exit status: 0 success; 1 the map is damaged or something else went wrong; 2 wrong use
 )";
 
@@ -60,7 +63,10 @@ struct Arguments {
 /// The options that a command has; each takes a value.
 const std::set<std::string>& optionsOf(const std::string& command) {
   static const std::map<std::string, std::set<std::string>> options = {
-      {"rollback", {"--to"}}, {"export", {"--out"}}, {"import", {"--name", "--out", "--encoding"}}};
+      {"rollback", {"--to"}},
+      {"compact", {"--keep"}},
+      {"export", {"--out"}},
+      {"import", {"--name", "--out", "--encoding"}}};
   static const std::set<std::string> none;
   const auto found = options.find(command);
   return found == options.end() ? none : found->second;
@@ -91,11 +97,11 @@ Arguments parse(const std::vector<std::string>& words) {
   return arguments;
 }
 
-std::uint32_t traversalNumber(const std::optional<std::string>& text) {
+std::uint32_t number(const std::optional<std::string>& text, const std::string& what) {
   std::uint32_t number = 0;
   const char* end = text ? text->data() + text->size() : nullptr;
   if (!text || std::from_chars(text->data(), end, number).ptr != end || text->empty()) {
-    throw WrongUse("rollback needs --to and the number of a traversal, as listed by history");
+    throw WrongUse(what);
   }
   return number;
 }
@@ -112,7 +118,14 @@ int run(const Arguments& arguments) {
   } else if (command == "history") {
     printHistory(arguments.file, std::cout);
   } else if (command == "rollback") {
-    rollBack(arguments.file, traversalNumber(arguments.option("--to")), std::cout);
+    const std::string what = "rollback needs --to and the number of a traversal, as listed by history";
+    rollBack(arguments.file, number(arguments.option("--to"), what), std::cout);
+  } else if (command == "compact") {
+    constexpr const char* kDefaultKept = "10";
+    compactMap(
+        arguments.file,
+        number(arguments.option("--keep").value_or(kDefaultKept), "--keep needs a number of traversals"),
+        std::cout);
   } else if (command == "export") {
     const std::string name = std::filesystem::path(arguments.file).stem().string() + "_export";
     exportMap(arguments.file, arguments.option("--out").value_or(name), std::cout);

@@ -271,6 +271,60 @@ TEST_F(TraversalTest, hasOneWriterAndManyReaders) {
   second.discardTraversal();
 }
 
+TEST_F(TraversalTest, compactingMergesAllButTheNewest) {
+  std::vector<LocalMap> states;
+  {
+    MapFile map(file_);
+    for (const std::uint32_t index : {1U, 2U, 1U, 3U, 1U}) {
+      states.push_back(changed(index));
+      traverse(map, {states.back()});
+    }
+    map.compact(2);
+    EXPECT_TRUE(map.verify().empty());
+  }
+  MapFile map(file_);
+  const std::vector<TraversalInfo> traversals = map.traversals();
+  ASSERT_EQ(traversals.size(), 4U) << "taught, merged, and the two newest";
+  EXPECT_EQ(traversals[1].updated_maps, 2U) << "local maps 1 and 2, once each";
+  EXPECT_TRUE(sameBits(map.readAt(1, 1), states[2])) << "the newest of those that were merged";
+  EXPECT_TRUE(sameBits(map.readAt(2, 1), states[1]));
+  EXPECT_TRUE(sameBits(map.readAt(3, 1), taught_[3]));
+  EXPECT_TRUE(sameBits(map.readAt(3, 2), states[3]));
+  EXPECT_TRUE(sameBits(map.read(1), states[4]));
+  EXPECT_TRUE(sameBits(map.readAt(1, 0), taught_[1]));
+  EXPECT_EQ(map.readImagePng(4).size(), MapFile(file_).readImagePng(4).size());
+  EXPECT_TRUE(map.verify().empty());
+  traverse(map, {changed(4)});
+  EXPECT_EQ(map.traversals().back().id, 4U);
+  map.rollback(1);
+  EXPECT_TRUE(sameBits(map.read(1), states[2]));
+}
+
+TEST_F(TraversalTest, compactingKeepsWhatThereIsToKeep) {
+  MapFile map(file_);
+  const LocalMap state = changed(2);
+  traverse(map, {state});
+  map.compact(10);
+  EXPECT_EQ(map.traversals().size(), 2U);
+  EXPECT_EQ(map.traversals()[1].strategy, "latest/1");
+  EXPECT_TRUE(sameBits(map.read(2), state));
+  map.compact(0);
+  EXPECT_EQ(map.traversals().size(), 2U) << "what was learned is never forgotten";
+  EXPECT_TRUE(sameBits(map.read(2), state));
+  EXPECT_TRUE(sameBits(map.readAt(2, 0), taught_[2]));
+}
+
+TEST_F(TraversalTest, isNotCompactedWhileSomebodyLearns) {
+  MapFile map(file_);
+  MapFile other(file_);
+  other.beginTraversal("latest/1", 100.0);
+  EXPECT_NE(errorOf([&] { map.compact(1); }).find("another program"), std::string::npos);
+  EXPECT_THROW(other.compact(1), MapError);
+  other.discardTraversal();
+  map.compact(1);
+  EXPECT_FALSE(fs::exists(file_ + ".partial"));
+}
+
 TEST_F(TraversalTest, oneFileIsAllThereIsAtRest) {
   MapFile map(file_);
   traverse(map, {changed(1)});

@@ -107,6 +107,24 @@ TEST_F(MapToolTest, printsHistoryAndRollsBack) {
   EXPECT_TRUE(sameBits(MapFile(file_).read(2), taught_[2]));
 }
 
+TEST_F(MapToolTest, compacts) {
+  for (int i = 0; i < 3; ++i) {
+    MapFile map(file_);
+    map.beginTraversal("score_based/1", 1700200000.0 + i);
+    map.stage(learned_);
+    map.commitTraversal(1700200060.0 + i);
+  }
+  EXPECT_EQ(run("compact " + file_ + " --keep x").status, 2);
+  EXPECT_EQ(run("compact " + file_).status, 0);
+  EXPECT_EQ(MapFile(file_).traversals().size(), 5U) << "fewer than ten: all are kept";
+  const Result compacted = run("compact " + file_ + " --keep 1");
+  EXPECT_EQ(compacted.status, 0) << compacted.output;
+  EXPECT_NE(compacted.output.find("2 traversals merged"), std::string::npos) << compacted.output;
+  EXPECT_EQ(MapFile(file_).traversals().size(), 3U);
+  EXPECT_TRUE(sameBits(MapFile(file_).read(2), learned_));
+  EXPECT_EQ(run("verify " + file_).status, 0);
+}
+
 TEST_F(MapToolTest, exportsEveryBit) {
   const fs::path out(folder_ / "out");
   const Result exported = run("export " + file_ + " --out " + out.string());
@@ -157,11 +175,13 @@ class MapImportTest : public testing::Test {
     fs::create_directories(folder_ / "stored");
     for (int i = 0; i < 3; ++i) {
       cv::FileStorage storage(fileOf(i), cv::FileStorage::WRITE);
-      storage << "Image" << picture(i, {200, 120}) << "Keypoints" << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
+      storage << "Image" << picture(i, {200, 120}) << "Keypoints"
+              << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
       storage << "Descriptors" << cv::Mat(1, 32, CV_32F, cv::Scalar(7)) << "Time" << 1500000000 + i;
     }
     cv::FileStorage profile(folder_ / "stored/way.yaml", cv::FileStorage::WRITE);
-    profile << "Path" << std::vector<float>{0.0F, 0.5F, 0.0F, 0.0F, 0.6F, 0.5F, 0.1F, 0.0F, 1.2F, 0.0F, 0.0F, 0.0F};
+    profile << "Path"
+            << std::vector<float>{0.0F, 0.5F, 0.0F, 0.0F, 0.6F, 0.5F, 0.1F, 0.0F, 1.2F, 0.0F, 0.0F, 0.0F};
   }
 
   std::string fileOf(int i) const {
@@ -201,7 +221,8 @@ TEST_F(MapImportTest, makesAMapToDriveWith) {
   EXPECT_NEAR(map.metadata().length_m, 1.2, 1e-6) << "the end of the profile";
   EXPECT_EQ(map.metadata().map_interval_m, 0.5);
   EXPECT_EQ(map.metadata().taught_stamp_s, 1500000000.0);
-  EXPECT_EQ(map.metadata().extraction, ExtractionSettings().describe()) << "as the navigator extracts by default";
+  EXPECT_EQ(map.metadata().extraction, ExtractionSettings().describe())
+      << "as the navigator extracts by default";
   EXPECT_EQ(map.profile().at(0.7).forward, 0.5);
   EXPECT_NEAR(map.profile().at(0.7).angular, 0.1, 1e-6);
   const LocalMap second = map.read(1);
@@ -232,7 +253,8 @@ TEST_F(MapImportTest, saysWhatItRefuses) {
   expectRefused("way_001.000.yaml: holds no Image");
   {
     cv::FileStorage storage(fileOf(2), cv::FileStorage::WRITE);
-    storage << "Image" << picture(2, {200, 120}) << "Keypoints" << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
+    storage << "Image" << picture(2, {200, 120}) << "Keypoints"
+            << std::vector<cv::KeyPoint>(1, {9.F, 9.F, 9.F});
     storage << "Descriptors" << cv::Mat(1, 32, CV_32F, cv::Scalar(0.5));
   }
   expectRefused("way_001.000.yaml: Descriptors hold numbers that are no bytes");

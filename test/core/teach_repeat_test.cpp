@@ -120,6 +120,16 @@ TEST_F(TeachRepeat, learnsOncePerLocalMapAndInTheMapsFrame) {
   EXPECT_EQ(manager.file().traversals().size(), 2U);
 }
 
+TEST_F(TeachRepeat, aMapThatNothingChangesDoesNotGrow) {
+  teach();
+  MapManager manager(MapFile(file()), std::make_shared<strategies::StaticMap>());
+  const std::uint64_t size = manager.file().sizes().file_bytes;
+  repeat(manager, 5);
+  EXPECT_EQ(manager.endTraversal(true, 2000.0), 0U);
+  EXPECT_EQ(manager.file().sizes().file_bytes, size);
+  EXPECT_EQ(manager.file().traversals().size(), 1U);
+}
+
 TEST_F(TeachRepeat, learnsOnlyFromWhatItIsSureOf) {
   teach();
   MapManagerSettings settings;

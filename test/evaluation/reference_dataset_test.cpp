@@ -145,6 +145,12 @@ TEST_F(ReferenceMaps, malformedOnesAreRefusedByName) {
   expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file + ":1:", "%YAML");
   std::ofstream(folder_ / file) << "%YAML:1.0\n---\nImage: !!opencv-matrix\n   rows: [";
   expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file, "is no OpenCV FileStorage YAML");
+  for (const char* size :
+       {"rows: 1\n   cols: 100000", "rows: -1\n   cols: 2", "rows: 1\n   cols: \"many\"", "cols: 1"}) {
+    std::ofstream(folder_ / file) << "%YAML:1.0\n---\nImage: !!opencv-matrix\n   " << size
+                                  << "\n   dt: u\n   data: [ 1, 2 ]\n";
+    expectError(errorOf([&] { readReferenceMap(folder_ / file); }), file, "is no matrix");
+  }
   std::ofstream(folder_ / file) << "%YAML:1.0\n---\nTime: soon\n";
   expectError(errorOf([&] { readReferenceTime(folder_ / file); }), file + ":3:", "soon");
   expectError(errorOf([&] { readReferenceMap(folder_ / "none.yaml"); }), "none.yaml", "cannot be read");

@@ -55,7 +55,8 @@ class ClosedLoop : public ::testing::Test {
     MapMetadata metadata;
     metadata.name = "loop";
     metadata.camera = "camera";
-    TeachSession session(folder_ / "loop.perennial", metadata, false, {}, {});
+    TeachSession session(folder_ / "loop.perennial", metadata, true, {}, settings_.extraction);
+    taught_.clear();
     Odometer odometer;
     park.place(0.0, 0.0);
     park.setDriver(true);
@@ -93,7 +94,7 @@ class ClosedLoop : public ::testing::Test {
 
   /// Repeats the path `traversals` times without a stop; the errors of each traversal.
   std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager, int traversals) {
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), {});
+    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings_);
     session.setFocalLength(park.settings().camera.geometry.fx);
     Odometer odometer;
     std::vector<std::vector<TrackError>> errors;
@@ -117,9 +118,11 @@ class ClosedLoop : public ::testing::Test {
         manager.observe(step.local_map, step.local_map_distance_m, observationOf(step));
         park.command(step.velocity);
         errors.back().push_back(errorOf(frame.true_pose));
+        lost_ = std::abs(errors.back().back().lateral_m) > 2.0;
         registered_ += step.registration.result.displacement_px.has_value();
         ++images_;
-      } while (!session.atEnd(*travelled_m) && errors.back().size() < 2000);
+      } while (!session.atEnd(*travelled_m) && !lost_ && errors.back().size() < 2000);
+      EXPECT_FALSE(lost_ && !may_get_lost_) << "more than 2 m beside the path";
       EXPECT_LT(errors.back().size(), 2000U) << "did not finish the loop";
       start_m = session.distance(*travelled_m) - session.length();
       manager.endTraversal(true, static_cast<double>(park.nowNs()) * 1e-9);
@@ -132,6 +135,9 @@ class ClosedLoop : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  RepeatSettings settings_;
+  bool may_get_lost_ = false;
+  bool lost_ = false;
   std::vector<park::Pose> taught_;
   int images_ = 0;
   int registered_ = 0;
@@ -168,6 +174,52 @@ TEST_F(ClosedLoop, tenLoopsWithNoisyOdometryStayOnThePath) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
     std::printf("loop %zu: cross-track RMS %.3f m, largest %.3f m\n", i + 1, rms(loops[i]), largest(loops[i]));
     EXPECT_LE(largest(loops[i]), 0.15) << "loop " << i + 1;
+  }
+}
+
+/// Not a test but the comparison in docs/registration.md: taught at noon in June, then from beside the path under other
+/// conditions, without learning. Minutes; run with --gtest_also_run_disabled_tests.
+TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
+  struct Setting {
+    const char* name;
+    RegistrationMethod method;
+    bool half_and_buckets;
+    double min_confidence;
+  };
+  const std::vector<std::pair<const char*, park::Weather>> whens{{"2026-06-21T13:00:00Z", park::Weather::kClear},
+                                                                 {"2026-06-21T15:00:00Z", park::Weather::kRain},
+                                                                 {"2026-06-21T19:20:00Z", park::Weather::kClear},
+                                                                 {"2026-06-21T22:30:00Z", park::Weather::kClear},
+                                                                 {"2026-10-20T12:00:00Z", park::Weather::kOvercast}};
+  may_get_lost_ = true;
+  for (const Setting& setting : {Setting{"histogram, full", RegistrationMethod::kHistogram, false, 0.0},
+                                 Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, 0.0},
+                                 Setting{"robust, full", RegistrationMethod::kRobust, false, 0.0},
+                                 Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, 0.0},
+                                 Setting{"the same, the default", RegistrationMethod::kRobust, true, 0.4}}) {
+    settings_.registration.method = setting.method;
+    settings_.registration.min_confidence = setting.min_confidence;
+    settings_.extraction = setting.half_and_buckets ? ExtractionSettings() : ExtractionSettings::published();
+    park::ParkSettings park_settings;
+    park_settings.image_rate_hz = 5;
+    park::ParkSimulation park(park_settings, {});
+    teach(park);
+    MapManager maps = manager(std::make_shared<strategies::StaticMap>());
+    for (const auto& [date_time, weather] : whens) {
+      park::Conditions conditions;
+      conditions.date_time_s = park::parseDateTime(date_time);
+      conditions.weather = weather;
+      park.setConditions(conditions);
+      park.place(0.4, 6.0 * kDegree);
+      images_ = registered_ = 0;
+      const auto errors = repeat(park, maps, 1).front();
+      const std::vector<TrackError> second_half(errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                                                errors.end());
+      std::printf("%-26s %s %d | second half RMS %.3f m, largest %.3f m | registered %5.1f %% | %s\n", setting.name,
+                  date_time, static_cast<int>(weather), rms(second_half), largest(second_half),
+                  100.0 * registered_ / images_, lost_ ? "LOST" : "finished");
+      std::fflush(stdout);
+    }
   }
 }
 

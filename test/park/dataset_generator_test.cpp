@@ -68,7 +68,7 @@ TEST(GenerateDataset, isExactResumesAndRefusesOtherSettings) {
     for (std::size_t v = 1; v < place.second.size(); ++v) {
       const cv::Mat image = dataset.readImage(place.second[v]);
       ASSERT_EQ(image.size(), cv::Size(376, 240));
-      const auto found = HistogramRegistration().registerView(map, extractor.extract(image));
+      const auto found = makeRegistration({})->registerView(map, extractor.extract(image));
       if (found.inliers >= 20) {
         EXPECT_NEAR(*found.displacement_px, groundTruthDisplacement(place.second[0], place.second[v]), 5.0);
         ++answered;

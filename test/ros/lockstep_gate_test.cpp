@@ -62,6 +62,22 @@ TEST(LockstepGate, waitsForTheAnnouncedCommandInEitherOrder) {
   EXPECT_TRUE(gate.open());
 }
 
+TEST(LockstepGate, throughDriversTakesTheirStampsAndNoCommands) {
+  LockstepGate gate({"a"}, true);
+  gate.expect(ros::Time(1.0));
+  perennial_nav::Processed done = answer("a", 1.01);
+  done.has_command = 1;
+  done.command = twist(0.5, 0.1);
+  gate.onProcessed(done);
+  EXPECT_TRUE(gate.open()) << "stamped by the camera's driver a little later, and its command goes elsewhere";
+  gate.expect(ros::Time(1.2));
+  EXPECT_FALSE(gate.open());
+  gate.onProcessed(answer("a", 1.0));
+  EXPECT_FALSE(gate.open()) << "an answer to the image before";
+  gate.onProcessed(answer("a", 1.19));
+  EXPECT_TRUE(gate.open());
+}
+
 TEST(LockstepGate, doesNotWaitAgainForANodeThatDidNotAnswer) {
   LockstepGate gate({"a", "b"});
   gate.expect(ros::Time(1.0));

@@ -21,17 +21,25 @@ struct ExtractionSettings {
   double min_response = 3e-6;
   /// Extract from the image at half its width and height (each pixel the mean of four). Coordinates and scales are those
   /// of the full image all the same; a descriptor covers twice the width.
-  bool half_resolution = false;
+  bool half_resolution = true;
   /// With more than one bucket the N features are spread over a grid of buckets: the strongest of every bucket first,
   /// then the second strongest of every one, and so on. 1 x 1: the strongest N wherever they are.
-  int bucket_columns = 1;
-  int bucket_rows = 1;
+  int bucket_columns = 16;
+  int bucket_rows = 8;
+
+  /// As in the reference: full resolution, the strongest N wherever they are.
+  static ExtractionSettings published() {
+    ExtractionSettings settings;
+    settings.half_resolution = false;
+    settings.bucket_columns = settings.bucket_rows = 1;
+    return settings;
+  }
 
   /// Keys as the members are called. Throws ParameterError.
   static ExtractionSettings load(ParameterReader& reader);
 
   /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...". Resolution
-  /// and buckets are named only when they are not the default, so that maps from before they existed stay usable.
+  /// and buckets are named only when they are not the published ones, so that maps from before they existed stay usable.
   std::string describe() const;
 };
 

@@ -135,6 +135,12 @@ class MapFile {
   /// Forgets every traversal after `traversal`. Not while a traversal is open.
   void rollback(std::uint32_t traversal);
 
+  /// Bounds the file's size: writes it anew with the newest `keep` traversals one by one, and all earlier
+  /// ones merged into a single traversal, number 1. Newest and taught states stay what they are; rollback
+  /// reaches the merged traversal, the kept ones and the teaching. The old file is replaced in one step.
+  /// Needs room for the new one meanwhile. Not while a traversal is open, here or in another program.
+  void compact(std::uint32_t keep);
+
   MapSizes sizes() const;
 
   /// Reads everything and returns what is wrong, empty when nothing is.

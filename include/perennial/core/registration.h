@@ -30,12 +30,12 @@ const char* nameOf(RegistrationMethod method);
 std::optional<RegistrationMethod> registrationMethod(const std::string& name);
 
 struct RegistrationSettings {
-  RegistrationMethod method = RegistrationMethod::kHistogram;  ///< "histogram" or "robust"
+  RegistrationMethod method = RegistrationMethod::kRobust;  ///< "histogram" or "robust"
   double ratio = 0.7;               ///< histogram: a pair needs distance(nearest) < ratio * distance(second nearest)
   double max_vertical_px = 50.0;    ///< pairs whose vertical difference exceeds this are dropped
   double bin_width_px = 20.0;       ///< width of the histogram's bins
   int min_inliers = 5;              ///< fewer agreeing pairs: no displacement
-  double min_confidence = 0.0;      ///< lower confidence: no displacement
+  double min_confidence = 0.4;      ///< lower confidence: no displacement; see docs/registration.md
 
   /// Keys as the members are called. Throws ParameterError.
   static RegistrationSettings load(ParameterReader& reader);

@@ -63,8 +63,13 @@ class ParkSimulation {
   /// `worldTime()`), because stamps must never go back.
   void setConditions(const Conditions& conditions);
   void command(const Velocity& velocity);
-  /// Goes on to the next image.
+  /// Goes on to the next image: as many ticks as there are between two of them, then look().
   ParkFrame step();
+  /// Goes on by one period of the odometry only.
+  Odometry tick();
+  /// What the camera sees now. The frame holds no odometry.
+  ParkFrame look();
+  int ticksPerImage() const { return settings_.odometry_rate_hz / settings_.image_rate_hz; }
 
   /// Lets the scripted driver drive from the start of the path, or stops it.
   void setDriver(bool drives);

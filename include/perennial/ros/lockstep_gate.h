@@ -23,7 +23,10 @@ namespace perennial {
 /// Knows no clock, topic or thread: feed it messages; not thread-safe.
 class LockstepGate {
  public:
-  explicit LockstepGate(const std::vector<std::string>& nodes);
+  /// `through_drivers`: images and commands pass through drivers of hardware, which stamp images by their own
+  /// idea of the moment and change commands. Then an answer counts when its stamp is later than the last
+  /// image's, and no command is waited for.
+  explicit LockstepGate(const std::vector<std::string>& nodes, bool through_drivers = false);
 
   /// An image of this stamp goes out now.
   void expect(const ros::Time& stamp);
@@ -38,10 +41,14 @@ class LockstepGate {
   void giveUp();
 
  private:
+  bool answers(const ros::Time& stamp) const;
+
   std::set<std::string> nodes_;
+  bool through_drivers_;
   std::set<std::string> absent_;  ///< given up on
   std::set<std::string> pending_;
   ros::Time stamp_;
+  ros::Time last_stamp_;                           ///< of the image before
   std::optional<geometry_msgs::Twist> newest_;     ///< command that arrived
   std::optional<geometry_msgs::Twist> announced_;  ///< command that must arrive
   std::string announced_by_;

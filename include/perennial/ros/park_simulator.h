@@ -27,6 +27,10 @@ struct ParkSimulatorSettings {
   std::string base_frame = "base_link";
   std::string camera_frame = "camera";
   bool drive = false;  ///< whether the scripted driver drives from the beginning
+  /// The robot's and the camera's drivers stand between this world and the nodes: the scripted driver
+  /// commands the robot's driver (topic driver_cmd_vel), not the robot, and lockstep leaves the drivers the
+  /// time they need.
+  bool through_drivers = false;
 
   /// Keys: lockstep (names separated by commas or spaces), and the other members'. Throws ParameterError.
   static ParkSimulatorSettings load(ParameterReader& reader);
@@ -47,6 +51,7 @@ class ParkSimulator {
 
  private:
   void step();
+  void runThroughDrivers();
   void awaitNodes();
   void awaitAnswers();
   void keepPace();
@@ -57,6 +62,7 @@ class ParkSimulator {
   bool onSetPark(perennial_nav::SetPark::Request& request, perennial_nav::SetPark::Response& response);
 
   void drive();
+  void publishTick(const park::Odometry& odometry);
   void publishOdometry(const park::Odometry& odometry);
   void publishTruth(const park::ParkFrame& frame);
   void publishImage(const park::ParkFrame& frame);

@@ -103,11 +103,11 @@ inline FeatureSet selected(const FeatureSet& features, const std::vector<std::si
 /// first.
 inline Observation observe(const MapStrategy& strategy, const LocalMap& map, FeatureSet view,
                            double stamp_s) {
-  const HistogramRegistration registration;
+  const auto registration = makeRegistration({});
   Observation best;
   bool first = true;
   for (const std::vector<std::size_t>& used : strategy.alternatives(map, stamp_s)) {
-    RegistrationResult result = registration.registerView(selected(map.features, used), view);
+    RegistrationResult result = registration->registerView(selected(map.features, used), view);
     if (first || result.inliers > best.registration.inliers) {
       best.registration = std::move(result);
       best.used = used;

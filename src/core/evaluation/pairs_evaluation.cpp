@@ -23,14 +23,17 @@ double timed(Work work) {
 class PlaceEvaluator {
  public:
   PlaceEvaluator(const Dataset& dataset, const PairsSettings& settings)
-      : dataset_(dataset), extractor_(settings.extraction), registration_(makeRegistration(settings.registration)) {}
+      : dataset_(dataset),
+        extractor_(settings.extraction),
+        registration_(makeRegistration(settings.registration)),
+        disturbance_(settings.disturbance) {}
 
   /// Registers the image against all images of the place before it.
   void add(const DatasetRow& row, std::vector<PairRecord>& records) {
     const cv::Mat image = dataset_.readImage(row);
-    FeatureSet view;
-    extraction_ms_ += timed([&] { extractor_.extractInto(image, view); });
-    ++extractions_;
+    FeatureSet map = extract(image);
+    const FeatureSet view =
+        disturbance_ ? extract(disturbed(image, *disturbance_, static_cast<std::uint64_t>(extractions_))) : map;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       registration_ms_ += timed([&] { registration_->registerInto(features_[i], view, workspace_, result_); });
       ++registrations_;
@@ -38,7 +41,7 @@ class PlaceEvaluator {
                          result_.matches, result_.confidence, result_.uncertainty_px});
     }
     rows_.push_back(row);
-    features_.push_back(std::move(view));
+    features_.push_back(std::move(map));
   }
 
   void beginPlace() {
@@ -50,9 +53,17 @@ class PlaceEvaluator {
   double msPerRegistration() const { return registration_ms_ / std::max(1, registrations_); }
 
  private:
+  FeatureSet extract(const cv::Mat& image) {
+    FeatureSet features;
+    extraction_ms_ += timed([&] { extractor_.extractInto(image, features); });
+    ++extractions_;
+    return features;
+  }
+
   const Dataset& dataset_;
   FeatureExtractor extractor_;
   std::unique_ptr<Registration> registration_;
+  std::optional<Disturbance> disturbance_;
   RegistrationWorkspace workspace_;
   RegistrationResult result_;
   std::vector<DatasetRow> rows_;

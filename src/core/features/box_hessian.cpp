@@ -5,21 +5,33 @@ namespace {
 
 float signedSum(std::uint32_t modular) { return static_cast<float>(static_cast<std::int32_t>(modular)); }
 
-/// One response, from pointers into the differences at its centre column. Inlined into both loops below.
+/// Derivatives at one pixel, from pointers into the column differences there. Inlined into the loops below.
 struct Response {
   int lobe;
   int half;
   int half_lobe;
   float norm;
 
+  explicit Response(const BoxFilter& filter)
+      : lobe(filter.lobe), half(filter.half()), half_lobe(filter.lobe / 2), norm(responseNorm(filter)) {}
+
+  float dxx(const std::uint32_t* xx) const noexcept {
+    return signedSum((xx[half + 1] - xx[-half]) - 3U * (xx[half_lobe + 1] - xx[-half_lobe])) * norm;
+  }
+  float dyy(const std::uint32_t* yy) const noexcept { return signedSum(yy[lobe] - yy[1 - lobe]) * norm; }
+  float dxy(const std::uint32_t* xy) const noexcept {
+    return signedSum((xy[0] - xy[-lobe]) - (xy[lobe + 1] - xy[1])) * norm;
+  }
+  /// Dxy from the image's rows.
+  float dxy(const FilterRows& rows, int x) const noexcept {
+    const auto column = [&](int at) { return (rows.xy[1][at] - rows.xy[0][at]) - (rows.xy[3][at] - rows.xy[2][at]); };
+    return signedSum((column(x) - column(x - lobe)) - (column(x + lobe + 1) - column(x + 1))) * norm;
+  }
+
+  static float determinant(float dxx, float dyy, float dxy) noexcept { return dxx * dyy - kMixedWeight * dxy * dxy; }
+
   float operator()(const std::uint32_t* xx, const std::uint32_t* yy, const std::uint32_t* xy) const noexcept {
-    const std::uint32_t sum_xx = (xx[half + 1] - xx[-half]) - 3U * (xx[half_lobe + 1] - xx[-half_lobe]);
-    const std::uint32_t sum_yy = yy[lobe] - yy[1 - lobe];
-    const std::uint32_t sum_xy = (xy[0] - xy[-lobe]) - (xy[lobe + 1] - xy[1]);
-    const float dxx = signedSum(sum_xx) * norm;
-    const float dyy = signedSum(sum_yy) * norm;
-    const float dxy = signedSum(sum_xy) * norm;
-    return dxx * dyy - kMixedWeight * dxy * dxy;
+    return determinant(dxx(xx), dyy(yy), dxy(xy));
   }
 };
 
@@ -46,11 +58,10 @@ FilterRows::FilterRows(const IntegralImage& integral, const BoxFilter& filter, i
   xy[3] = integral.row(y + lobe + 1);
 }
 
-void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept {
+void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept {
   // Local pointers and one loop per derivative: so the compiler sees that nothing overlaps, and vectorises.
   std::uint32_t* const __restrict xx = differences.xx.data();
   std::uint32_t* const __restrict yy = differences.yy.data();
-  std::uint32_t* const __restrict xy = differences.xy.data();
   const auto [xx0, xx1] = rows.xx;
   for (int x = begin; x < end; ++x) {
     xx[x] = xx1[x] - xx0[x];
@@ -59,6 +70,11 @@ void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDiffere
   for (int x = begin; x < end; ++x) {
     yy[x] = (yy3[x] - yy0[x]) - 3U * (yy2[x] - yy1[x]);
   }
+}
+
+void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept {
+  differenceColumnsXxYy(rows, begin, end, differences);
+  std::uint32_t* const __restrict xy = differences.xy.data();
   const auto [xy0, xy1, xy2, xy3] = rows.xy;
   for (int x = begin; x < end; ++x) {
     xy[x] = (xy1[x] - xy0[x]) - (xy3[x] - xy2[x]);
@@ -67,7 +83,7 @@ void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDiffere
 
 void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int step, int count,
                 float* __restrict responses) noexcept {
-  const Response response{filter.lobe, filter.half(), filter.lobe / 2, responseNorm(filter)};
+  const Response response(filter);
   const std::uint32_t* const xx = differences.xx.data() + begin;
   const std::uint32_t* const yy = differences.yy.data() + begin;
   const std::uint32_t* const xy = differences.xy.data() + begin;
@@ -80,6 +96,37 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
   for (int i = 0; i < count; ++i) {
     responses[i] = response(xx + i * step, yy + i * step, xy + i * step);
   }
+}
+
+int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter, int begin,
+                    int count, float threshold, float* __restrict responses) noexcept {
+  const Response response(filter);
+  const std::uint32_t* const xx = differences.xx.data() + begin;
+  const std::uint32_t* const yy = differences.yy.data() + begin;
+  int computed = 0;
+  for (int i = 0; i < count; ++i) {
+    const float dxx = response.dxx(xx + i);
+    const float dyy = response.dyy(yy + i);
+    const bool may_reach = dxx * dyy >= threshold;
+    responses[i] = may_reach ? Response::determinant(dxx, dyy, response.dxy(rows, begin + i)) : kBelowThreshold;
+    computed += may_reach ? 1 : 0;
+  }
+  return computed;
+}
+
+float hessianAt(const IntegralImage& integral, const BoxFilter& filter, int x, int y) noexcept {
+  const Response response(filter);
+  const FilterRows rows(integral, filter, y);
+  const auto xx = [&](int at) { return rows.xx[1][at] - rows.xx[0][at]; };
+  const auto yy = [&](int at) {
+    return (rows.yy[3][at] - rows.yy[0][at]) - 3U * (rows.yy[2][at] - rows.yy[1][at]);
+  };
+  const int half = filter.half();
+  const int half_lobe = filter.lobe / 2;
+  const std::uint32_t sum_xx = (xx(x + half + 1) - xx(x - half)) - 3U * (xx(x + half_lobe + 1) - xx(x - half_lobe));
+  const std::uint32_t sum_yy = yy(x + filter.lobe) - yy(x + 1 - filter.lobe);
+  return Response::determinant(signedSum(sum_xx) * response.norm, signedSum(sum_yy) * response.norm,
+                               response.dxy(rows, x));
 }
 
 }  // namespace perennial

@@ -7,6 +7,9 @@
 namespace perennial {
 namespace {
 
+/// Where more than half of a row has to be computed anyway, computing so many rows whole is cheaper than looking first.
+constexpr int kDenseRows = 15;
+
 /// Samples 0, step, 2 step, ... that lie before `length`.
 int samples(int length, int step) { return length > 0 ? (length + step - 1) / step : 0; }
 
@@ -51,6 +54,7 @@ HessianPyramid::HessianPyramid(int octaves, int layers) : octaves_(octaves), lay
 
 void HessianPyramid::compute(const IntegralImage& integral) {
   fit(integral, integral.rows());
+  threshold_ = kBelowThreshold;
   for (int octave = 0; octave < octaves_; ++octave) {
     computeOctave(integral, octave, false);
   }
@@ -106,19 +110,34 @@ void HessianPyramid::filterRow(const IntegralImage& integral, ResponseLayer& lay
   }
   const int first_x = layer.begin * layer.step;
   const int last_x = (layer.columns_end - 1) * layer.step;
-  const int half = layer.filter.half();
-  const Kernels& use = kernels();
-  const FilterRows rows(integral, layer.filter, j * layer.step);
-  use.difference_columns(rows, first_x - half, last_x + half + 2, differences_);
   float* const responses = layer.row(j) + layer.begin;
   if (layer.step == 1) {
-    use.hessian_row(differences_, layer.filter, first_x, count, responses);
+    filterPixels(integral, layer, j, first_x, count, responses);
     return;
   }
   // Every pixel, then every step-th: vector code does a whole row faster than scalar code its samples.
-  use.hessian_row(differences_, layer.filter, first_x, last_x - first_x + 1, full_row_.data());
+  filterPixels(integral, layer, j * layer.step, first_x, last_x - first_x + 1, full_row_.data());
   for (int i = 0; i < count; ++i) {
     responses[i] = full_row_[static_cast<std::size_t>(i * layer.step)];
+  }
+}
+
+void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x, int count,
+                                  float* responses) {
+  const int begin = first_x - layer.filter.half();
+  const int end = first_x + count + layer.filter.half() + 1;
+  const Kernels& use = kernels();
+  const FilterRows rows(integral, layer.filter, y);
+  if (threshold_ == kBelowThreshold || layer.dense_rows > 0) {
+    layer.dense_rows = std::max(0, layer.dense_rows - 1);
+    use.difference_columns(rows, begin, end, differences_);
+    use.hessian_row(differences_, layer.filter, first_x, count, responses);
+    return;
+  }
+  use.difference_columns_xx_yy(rows, begin, end, differences_);
+  const int computed = use.hessian_row_above(rows, differences_, layer.filter, first_x, count, threshold_, responses);
+  if (2 * computed > count) {
+    layer.dense_rows = kDenseRows;
   }
 }
 

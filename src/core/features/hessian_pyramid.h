@@ -19,7 +19,8 @@ struct ResponseLayer {
   int begin = 0;
   int columns_end = 0;
   int rows_end = 0;
-  int rows_held = 0;  ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
+  int dense_rows = 0;  ///< rows to come in which every response is computed, because most were in the row before
+  int rows_held = 0;   ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
   std::vector<float> responses;
 
   /// Row j, which must be among those held.
@@ -49,9 +50,11 @@ class HessianPyramid {
   /// The same, handing out rows as they come: visit(octave, j) is called when rows j - 1 .. j + 1 of all layers of the
   /// octave are there, octave by octave, for all j but an octave's first and last. Of octave 0 only a few rows are held:
   /// its responses never leave the processor's cache, which takes half the time of writing and reading them.
+  /// Responses that are known to stay below `threshold` may be kBelowThreshold instead; see responseAt().
   template <class Visit>
-  void stream(const IntegralImage& integral, Visit visit) {
+  void stream(const IntegralImage& integral, float threshold, Visit visit) {
     fit(integral, kRowsStreamed);
+    threshold_ = threshold;
     for (int j = 0; j < rows_; ++j) {
       computeRow(integral, j);
       if (j > 1) {
@@ -64,6 +67,12 @@ class HessianPyramid {
         visit(octave, j);
       }
     }
+  }
+
+  /// The response at a sample of a row that is held, also where it was left out.
+  float responseAt(const IntegralImage& integral, const ResponseLayer& layer, int i, int j) const {
+    const float response = layer.row(j)[i];
+    return response == kBelowThreshold ? hessianAt(integral, layer.filter, i * layer.step, j * layer.step) : response;
   }
 
   int octaves() const { return octaves_; }
@@ -88,12 +97,15 @@ class HessianPyramid {
   /// `copied`: the layers that the octave below has too are filled already.
   void computeOctave(const IntegralImage& integral, int octave, bool copied);
   void filterRow(const IntegralImage& integral, ResponseLayer& layer, int j);
+  /// Responses of pixels first_x .. first_x + count - 1 of an image row.
+  void filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x, int count, float* responses);
 
   int octaves_;
   int layers_;
   int columns_ = 0;  ///< of the image that the layers fit
   int rows_ = 0;
   int rows_held_ = 0;
+  float threshold_ = kBelowThreshold;  ///< responses below it need not be computed
   std::vector<ResponseLayer> pyramid_;
   ColumnDifferences differences_;
   std::vector<float> full_row_;  ///< responses at every pixel of a row, where only some are kept

@@ -59,9 +59,10 @@ void findInRow(const Triple& layers, float threshold, Maximum where, std::vector
 
 /// Value, gradient and second derivatives by central differences, in samples; axes x, y, scale.
 struct Quadratic {
-  Quadratic(const HessianPyramid& pyramid, const Maximum& at) {
+  Quadratic(const HessianPyramid& pyramid, const IntegralImage& integral, const Maximum& at) {
     const auto value = [&](int dx, int dy, int ds) {
-      return static_cast<double>(pyramid.layer(at.octave, at.layer + ds).row(at.j + dy)[at.i + dx]);
+      const ResponseLayer& layer = pyramid.layer(at.octave, at.layer + ds);
+      return static_cast<double>(pyramid.responseAt(integral, layer, at.i + dx, at.j + dy));
     };
     const double centre = value(0, 0, 0);
     gx = 0.5 * (value(1, 0, 0) - value(-1, 0, 0));
@@ -122,8 +123,8 @@ void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float thr
   }
 }
 
-std::optional<Keypoint> refine(const HessianPyramid& pyramid, const Maximum& maximum) {
-  const auto [dx, dy, ds] = Quadratic(pyramid, maximum).extremum();
+std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral, const Maximum& maximum) {
+  const auto [dx, dy, ds] = Quadratic(pyramid, integral, maximum).extremum();
   if (!(std::abs(dx) < 1.0 && std::abs(dy) < 1.0 && std::abs(ds) < 1.0)) {
     return std::nullopt;
   }

@@ -35,6 +35,6 @@ void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float thr
 /// Position and scale of the extremum of the quadratic through the 27 responses around a maximum (Brown and
 /// Lowe, BMVC 2002). None when it lies a whole sample or more away in any direction, or when there is none:
 /// then the responses are no blob. The keypoint keeps the sample's response.
-std::optional<Keypoint> refine(const HessianPyramid& pyramid, const Maximum& maximum);
+std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral, const Maximum& maximum);
 
 }  // namespace perennial

@@ -51,11 +51,11 @@ const std::vector<Keypoint>& SurfDetector::detect(const IntegralImage& integral,
 
 void SurfDetector::findCandidates(float threshold, const IntegralImage& integral, const PatchMargin& margin) {
   candidates_.clear();
-  pyramid_.stream(integral, [&](int octave, int j) {
+  pyramid_.stream(integral, threshold, [&](int octave, int j) {
     maxima_.clear();
     findMaximaInRow(pyramid_, octave, j, threshold, maxima_);
     for (const Maximum& maximum : maxima_) {
-      const std::optional<Keypoint> keypoint = refine(pyramid_, maximum);
+      const std::optional<Keypoint> keypoint = refine(pyramid_, integral, maximum);
       if (keypoint && margin.fits(nearestPixel(*keypoint), integral.columns(), integral.rows())) {
         candidates_.push_back({*keypoint, maximum.octave});
       }

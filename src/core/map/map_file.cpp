@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/map/map_compaction.h"
+#include "core/map/map_creation.h"
 #include "core/map/map_image.h"
 #include "core/map/map_opening.h"
 #include "core/map/map_rows.h"
@@ -265,6 +267,23 @@ void MapFile::rollback(std::uint32_t traversal) {
     Statement(database, sql).bind(0, std::int64_t{traversal}).run();
   }
   transaction.commit();
+}
+
+void MapFile::compact(std::uint32_t keep) {
+  if (implementation_->open) {
+    throw MapError("map '" + file() + "': a traversal is open; commit or discard it before compacting");
+  }
+  const std::string file = this->file();
+  implementation_->lockForWriting();
+  PartialFile partial(file);
+  {
+    const Transaction nobody_learns(implementation_->database);
+    const Database target = createMap(partial);
+    copyCompacted(implementation_->database, implementation_->stored, keep, target);
+    completeMap(target);
+  }
+  partial.publish(true);
+  implementation_ = std::make_unique<Implementation>(file);
 }
 
 std::vector<std::string> MapFile::verify() const {

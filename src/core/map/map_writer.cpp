@@ -1,29 +1,21 @@
 #include <cmath>
 #include <optional>
 
-#include "core/map/checksum_vfs.h"
 #include "core/map/local_map_codec.h"
+#include "core/map/map_creation.h"
 #include "core/map/map_image.h"
 #include "core/map/map_rows.h"
-#include "core/map/map_schema.h"
 #include "core/map/publish_file.h"
 #include "core/map/sqlite.h"
 #include "perennial/core/map_file.h"
 
 namespace perennial {
 
-/// One transaction from the first local map to the last. Nobody else looks at the partial file and it is
-/// worthless after a crash, so it needs neither journal nor syncing; SQLite's cache is bounded, what exceeds
-/// it goes to the file.
+/// One transaction from the first local map to the last.
 struct MapWriter::Implementation {
   Implementation(const std::string& file, const MapMetadata& metadata_in, bool overwrite_in)
       : metadata(metadata_in), overwrite(overwrite_in), partial(file) {
-    const Page page = emptyDatabase(kMapApplicationId);
-    partial.append(page.data(), page.size());
-    database.emplace(Database::openMap(partial.path()));
-    database->execute(
-        "PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE; BEGIN EXCLUSIVE");
-    createSchema(*database);
+    database.emplace(createMap(partial));
     insert_place.emplace(*database, "INSERT INTO local_map VALUES(?, ?, ?, ?)");
     insert_image.emplace(*database, "INSERT INTO image VALUES(?, ?, ?)");
     insert_state.emplace(*database, "INSERT INTO state VALUES(NULL, ?, 0, ?, ?)");
@@ -103,7 +95,7 @@ void MapWriter::Implementation::complete(const PathProfile& profile, double leng
   writeProfile(*database, profile);
   writeTraversal(*database, {0, "", metadata.taught_stamp_s, last_stamp_s, local_maps});
   writeMetadata(*database, {metadata, local_maps, profile.entries().size()});
-  database->execute(("PRAGMA user_version=" + std::to_string(kMapFormatVersion) + "; COMMIT").c_str());
+  completeMap(*database);
   broken = false;
   insert_place.reset();
   insert_image.reset();

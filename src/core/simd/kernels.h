@@ -19,6 +19,11 @@ struct Kernels {
 
   /// See differenceColumns() in box_hessian.h.
   void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
+  /// See differenceColumnsXxYy() in box_hessian.h.
+  void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
+  /// See hessianRowAbove() in box_hessian.h.
+  int (*hessian_row_above)(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
+                           int begin, int count, float threshold, float* responses);
   /// See hessianRow() in box_hessian.h, with a step of 1.
   void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
                       float* responses);

@@ -31,17 +31,38 @@ using Float = hn::Vec<hn::ScalableTag<float>>;
 
 HWY_INLINE U32 timesThree(U32 value) { return hn::Add(hn::Add(value, value), value); }
 
+/// At columns x..x + lanes - 1.
+HWY_INLINE U32 differenceXx(const FilterRows& rows, int x) {
+  return hn::Sub(hn::LoadU(kU32, rows.xx[1] + x), hn::LoadU(kU32, rows.xx[0] + x));
+}
+
+HWY_INLINE U32 differenceYy(const FilterRows& rows, int x) {
+  const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
+  return hn::Sub(hn::Sub(at(rows.yy[3]), at(rows.yy[0])), timesThree(hn::Sub(at(rows.yy[2]), at(rows.yy[1]))));
+}
+
+HWY_INLINE U32 differenceXy(const FilterRows& rows, int x) {
+  const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
+  return hn::Sub(hn::Sub(at(rows.xy[1]), at(rows.xy[0])), hn::Sub(at(rows.xy[3]), at(rows.xy[2])));
+}
+
+void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
+  const int lanes = static_cast<int>(hn::Lanes(kU32));
+  int x = begin;
+  for (; x + lanes <= end; x += lanes) {
+    hn::StoreU(differenceXx(rows, x), kU32, differences.xx.data() + x);
+    hn::StoreU(differenceYy(rows, x), kU32, differences.yy.data() + x);
+  }
+  perennial::differenceColumnsXxYy(rows, x, end, differences);
+}
+
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
   const int lanes = static_cast<int>(hn::Lanes(kU32));
   int x = begin;
   for (; x + lanes <= end; x += lanes) {
-    const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
-    hn::StoreU(hn::Sub(at(rows.xx[1]), at(rows.xx[0])), kU32, differences.xx.data() + x);
-    const U32 yy = hn::Sub(hn::Sub(at(rows.yy[3]), at(rows.yy[0])),
-                           timesThree(hn::Sub(at(rows.yy[2]), at(rows.yy[1]))));
-    hn::StoreU(yy, kU32, differences.yy.data() + x);
-    const U32 xy = hn::Sub(hn::Sub(at(rows.xy[1]), at(rows.xy[0])), hn::Sub(at(rows.xy[3]), at(rows.xy[2])));
-    hn::StoreU(xy, kU32, differences.xy.data() + x);
+    hn::StoreU(differenceXx(rows, x), kU32, differences.xx.data() + x);
+    hn::StoreU(differenceYy(rows, x), kU32, differences.yy.data() + x);
+    hn::StoreU(differenceXy(rows, x), kU32, differences.xy.data() + x);
   }
   perennial::differenceColumns(rows, x, end, differences);
 }
@@ -74,6 +95,40 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
     hn::StoreU(hn::Sub(hn::Mul(dxx, dyy), hn::Mul(hn::Mul(weight, dxy), dxy)), kFloat, responses + i);
   }
   perennial::hessianRow(differences, filter, begin + i, 1, count - i, responses + i);
+}
+
+int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter, int begin,
+                    int count, float threshold, float* HWY_RESTRICT responses) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloat));
+  const int lobe = filter.lobe;
+  const int half = filter.half();
+  const int half_lobe = lobe / 2;
+  const Float norm = hn::Set(kFloat, responseNorm(filter));
+  const Float weight = hn::Set(kFloat, kMixedWeight);
+  const Float least = hn::Set(kFloat, threshold);
+  const Float below = hn::Set(kFloat, kBelowThreshold);
+  const std::uint32_t* HWY_RESTRICT xx = differences.xx.data() + begin;
+  const std::uint32_t* HWY_RESTRICT yy = differences.yy.data() + begin;
+  int computed = 0;
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto at = [i](const std::uint32_t* values) HWY_ATTR { return hn::LoadU(kU32, values + i); };
+    const U32 sum_xx = hn::Sub(hn::Sub(at(xx + half + 1), at(xx - half)),
+                               timesThree(hn::Sub(at(xx + half_lobe + 1), at(xx - half_lobe))));
+    const U32 sum_yy = hn::Sub(at(yy + lobe), at(yy + 1 - lobe));
+    const Float bound = hn::Mul(scaled(sum_xx, norm), scaled(sum_yy, norm));
+    if (hn::AllFalse(kFloat, hn::Ge(bound, least))) {
+      hn::StoreU(below, kFloat, responses + i);
+      continue;
+    }
+    const int x = begin + i;
+    const U32 sum_xy = hn::Sub(hn::Sub(differenceXy(rows, x), differenceXy(rows, x - lobe)),
+                               hn::Sub(differenceXy(rows, x + lobe + 1), differenceXy(rows, x + 1)));
+    const Float dxy = scaled(sum_xy, norm);
+    hn::StoreU(hn::Sub(bound, hn::Mul(hn::Mul(weight, dxy), dxy)), kFloat, responses + i);
+    computed += lanes;
+  }
+  return computed + perennial::hessianRowAbove(rows, differences, filter, begin + i, count - i, threshold, responses + i);
 }
 
 int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) {
@@ -136,7 +191,8 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName, differenceColumns, hessianRow, nextPeak, boxSumRow, hammingDistances};
+  static constexpr Kernels kTable{kName,      differenceColumns, differenceColumnsXxYy, hessianRowAbove,
+                                   hessianRow, nextPeak,          boxSumRow,             hammingDistances};
   return &kTable;
 }
 

@@ -18,7 +18,8 @@ geometry_msgs::Twist toTwist(const Velocity& velocity) {
   return twist;
 }
 
-/// A body that is further away in its next odometry did not drive there: tracks do not turn when it is carried.
+/// A body that is further away in its next odometry did not drive there: tracks do not turn when it is
+/// carried.
 constexpr double kLongestBodyStep_m = 0.2;
 
 double wrapAngle(double angle) { return std::remainder(angle, 2.0 * M_PI); }
@@ -88,6 +89,8 @@ void CameleonSimulator::defineFaults() {
          robot_.jumpOdometers(static_cast<std::int32_t>(value), static_cast<std::int32_t>(value) / 2);
        }},
       {"latency", [=](double value, double) { faults_.latency_s = value; }},
+      {"pitch", [=](double value, double) { robot_.setAttitude(frames(value), robot_.status().roll_deg); }},
+      {"roll", [=](double value, double) { robot_.setAttitude(robot_.status().pitch_deg, frames(value)); }},
       {"battery", [=](double value, double) { robot_.setBattery(static_cast<int>(value)); }},
   };
 }

@@ -1,6 +1,7 @@
 #include "perennial/ros/drivers/tara_simulated_hid.h"
 
 #include <poll.h>
+#include <pthread.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -38,6 +39,7 @@ int TaraSimulatedHid::open(std::atomic<int>& far_end) {
 }
 
 void TaraSimulatedHid::run() {
+  pthread_setname_np(pthread_self(), "simulated_hid");  // not to be taken for the driver's
   while (true) {
     pollfd readable[2] = {{control_, POLLIN, 0}, {imu_, POLLIN, 0}};
     poll(readable, 2, 1);

@@ -1,6 +1,7 @@
 #include "perennial/ros/drivers/tara_simulated_video.h"
 
 #include <linux/videodev2.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -158,6 +159,7 @@ int TaraSimulatedVideo::setControl(void* argument) {
 
 void TaraSimulatedVideo::run() {
   std::uint64_t shown = world_.picture_number;
+  pthread_setname_np(pthread_self(), "simulated_video");  // not to be taken for the driver's
   auto due = std::chrono::steady_clock::now();
   while (!end_) {
     if (world_.triggered != 0) {

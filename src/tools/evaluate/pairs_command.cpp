@@ -11,12 +11,14 @@
 namespace perennial {
 
 const char kPairsUsage[] =
-    R"(usage: evaluate --pairs DATASET --out DIR [--set KEY=VALUE]...
+    R"(usage: evaluate --pairs DATASET --out DIR [--set KEY=VALUE]... [--disturb KIND=AMOUNT]
 
 Registers every pair of images of each place, the earlier one as the map, without map management. Writes errors.csv and
 summary.json to DIR.
 
   --set KEY=VALUE   a parameter: registration/method, registration/ratio, extraction/features, ...
+  --disturb KIND=AMOUNT   disturbs every view, not the maps: cover=0.3 (a passing object covers that share), blur=10 (px,
+                    horizontally), roll=3, pitch=3 (degrees the camera is tilted), saturate=0.5 (that share is white)
 )";
 
 namespace {
@@ -27,6 +29,8 @@ struct Options {
   std::string dataset;
   std::string out;
   Assignments assignments;
+  std::optional<Disturbance> disturbance;
+  std::string disturb;  ///< the same as it was given
 };
 
 std::pair<std::string, std::string> assignment(const std::string& text) {
@@ -45,6 +49,9 @@ Options parse(const std::vector<std::string>& arguments) {
       options.out = arguments[++i];
     } else if (arguments[i] == "--set" && has_value) {
       options.assignments.push_back(assignment(arguments[++i]));
+    } else if (arguments[i] == "--disturb" && has_value && !options.disturbance) {
+      options.disturbance = Disturbance::parse(arguments[++i]);
+      options.disturb = arguments[i];
     } else if (arguments[i].rfind("-", 0) != 0 && options.dataset.empty()) {
       options.dataset = arguments[i];
     } else {
@@ -95,7 +102,8 @@ PairsSettings settingsFrom(const Assignments& assignments) {
     }
   }
   return {loadGroup<ExtractionSettings>("extraction", assignments),
-          loadGroup<RegistrationSettings>("registration", assignments)};
+          loadGroup<RegistrationSettings>("registration", assignments),
+          std::nullopt};
 }
 
 void print(const PairsEvaluation& evaluation) {
@@ -111,8 +119,12 @@ void print(const PairsEvaluation& evaluation) {
 }  // namespace
 
 int evaluatePairsCommand(const std::vector<std::string>& arguments) {
-  const Options options = parse(arguments);
-  const PairsSettings settings = settingsFrom(options.assignments);
+  Options options = parse(arguments);
+  PairsSettings settings = settingsFrom(options.assignments);
+  if (options.disturbance) {
+    settings.disturbance = options.disturbance;
+    options.assignments.emplace_back("disturb", options.disturb);
+  }
   const Dataset dataset = loadDataset(options.dataset);
   const PairsEvaluation evaluation = evaluatePairs(dataset, settings);
   writePairs(options.out, options.assignments, evaluation);

@@ -52,9 +52,7 @@ std::vector<RepeatSettings> everySetting() {
   for (const bool bucketed : {false, true}) {
     for (const auto method : {RegistrationMethod::kHistogram, RegistrationMethod::kRobust}) {
       RepeatSettings settings;
-      settings.extraction.half_resolution = bucketed;
-      settings.extraction.bucket_columns = bucketed ? 16 : 1;
-      settings.extraction.bucket_rows = bucketed ? 8 : 1;
+      settings.extraction = bucketed ? ExtractionSettings() : ExtractionSettings::published();
       settings.registration.method = method;
       all.push_back(settings);
     }
@@ -66,7 +64,7 @@ std::vector<RepeatSettings> everySetting() {
 TEST(FeatureExtractor, keepsItsMemory) {
   const cv::Mat image = texture(400, 300, 81);
   const cv::Mat darker = 0.8 * image;
-  FeatureExtractor extractor;
+  FeatureExtractor extractor(ExtractionSettings::published());
   extractor.extract(image);
   const int before = allocations;
   const FeatureSet features = extractor.extract(darker);

@@ -52,8 +52,10 @@ TEST(ExtractionSettings, theExtractorRefusesTheSame) {
 }
 
 TEST(ExtractionSettings, descriptionIsReadable) {
-  EXPECT_EQ(ExtractionSettings().describe(),
+  EXPECT_EQ(ExtractionSettings::published().describe(),
             "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06");
+  EXPECT_EQ(ExtractionSettings().describe(),
+            "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 half_resolution=1 buckets=16x8");
 }
 
 TEST(ExtractionSettings, differentSettingsAreDescribedDifferently) {

@@ -15,7 +15,7 @@ namespace perennial {
 namespace {
 
 ExtractionSettings settingsFor(int features) {
-  ExtractionSettings settings;
+  ExtractionSettings settings = ExtractionSettings::published();
   settings.features = features;
   return settings;
 }
@@ -83,7 +83,7 @@ TEST(FeatureExtractor, tinyImagesHaveNoFeatures) {
 TEST(FeatureExtractor, findsTheOnlyFeatureThatASmallImageHasRoomFor) {
   cv::Mat image(56, 56, CV_8UC1, cv::Scalar(30));
   addBlob(image, 28.0, 28.0, 2.5, 200.0);
-  const FeatureSet found = FeatureExtractor().extract(image);
+  const FeatureSet found = FeatureExtractor(ExtractionSettings::published()).extract(image);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.keypoints[0].x, 28.0F, 0.05F);
 }

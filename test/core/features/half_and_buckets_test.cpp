@@ -15,7 +15,7 @@ namespace perennial {
 namespace {
 
 ExtractionSettings buckets(int columns, int rows) {
-  ExtractionSettings settings;
+  ExtractionSettings settings = ExtractionSettings::published();
   settings.features = 200;
   settings.bucket_columns = columns;
   settings.bucket_rows = rows;
@@ -34,7 +34,7 @@ TEST(HalfImage, isTheRoundedMeanOfFour) {
 TEST(HalfResolution, keypointsAreInTheFullImage) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(60));
   addBlob(image, 320.0, 200.0, 8.0, 150.0);
-  ExtractionSettings settings;
+  ExtractionSettings settings = ExtractionSettings::published();
   settings.half_resolution = true;
   const FeatureSet features = FeatureExtractor(settings).extract(image);
   ASSERT_FALSE(features.empty());
@@ -99,8 +99,8 @@ TEST(Buckets, doNotDependOnEarlierImages) {
 }
 
 TEST(ExtractionSettings, resolutionAndBucketsAreDescribedWhenSet) {
-  EXPECT_EQ(ExtractionSettings().describe().find("half"), std::string::npos);
-  EXPECT_EQ(ExtractionSettings().describe().find("buckets"), std::string::npos);
+  EXPECT_EQ(ExtractionSettings::published().describe().find("half"), std::string::npos);
+  EXPECT_EQ(ExtractionSettings::published().describe().find("buckets"), std::string::npos);
   ExtractionSettings settings = buckets(16, 8);
   settings.half_resolution = true;
   EXPECT_NE(settings.describe().find(" half_resolution=1 buckets=16x8"), std::string::npos);

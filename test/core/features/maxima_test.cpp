@@ -15,11 +15,15 @@ namespace {
 
 using Place = std::tuple<int, int, int>;  // layer, i, j
 
-HessianPyramid pyramidOf(const cv::Mat& image, int octaves) {
+IntegralImage integralOf(const cv::Mat& image) {
   IntegralImage integral;
   integral.compute(image);
+  return integral;
+}
+
+HessianPyramid pyramidOf(const cv::Mat& image, int octaves) {
   HessianPyramid pyramid(octaves, 3);
-  pyramid.compute(integral);
+  pyramid.compute(integralOf(image));
   return pyramid;
 }
 
@@ -134,7 +138,7 @@ TEST(Maxima, findsASymmetricBlobOnce) {
     std::vector<Maximum> maxima;
     findMaxima(pyramidOf(image, 1), 1e-3F, maxima);
     ASSERT_EQ(maxima.size(), 1U) << "blob at " << 50.0 + shift;
-    const auto keypoint = refine(pyramidOf(image, 1), maxima[0]);
+    const auto keypoint = refine(pyramidOf(image, 1), integralOf(image), maxima[0]);
     ASSERT_TRUE(keypoint);
     EXPECT_NEAR(keypoint->x, 50.0 + shift, 0.1);
     EXPECT_NEAR(keypoint->y, 50.0 + shift, 0.1);
@@ -156,7 +160,7 @@ TEST(Maxima, refinementFindsBlobsBetweenSamples) {
       const auto strongest =
           std::max_element(maxima.begin(), maxima.end(),
                            [](const Maximum& a, const Maximum& b) { return a.response < b.response; });
-      const auto keypoint = refine(pyramid, *strongest);
+      const auto keypoint = refine(pyramid, integralOf(image), *strongest);
       ASSERT_TRUE(keypoint) << "sigma " << sigma;
       EXPECT_NEAR(keypoint->x, 80.3, 0.25) << "sigma " << sigma;
       EXPECT_NEAR(keypoint->y, 79.6, 0.25) << "sigma " << sigma;
@@ -172,9 +176,10 @@ TEST(Maxima, refinementStaysWithinASample) {
   const HessianPyramid pyramid = pyramidOf(image, 3);
   std::vector<Maximum> maxima;
   findMaxima(pyramid, 1e-6F, maxima);
+  const IntegralImage integral = integralOf(image);
   int kept = 0;
   for (const Maximum& maximum : maxima) {
-    const auto keypoint = refine(pyramid, maximum);
+    const auto keypoint = refine(pyramid, integral, maximum);
     if (keypoint) {
       const int step = 1 << maximum.octave;
       EXPECT_LT(std::abs(keypoint->x - static_cast<float>(maximum.i * step)), static_cast<float>(step));

@@ -46,7 +46,7 @@ std::size_t nearestDescriptor(const Descriptor& descriptor, const FeatureSet& fe
 /// The strongest 200 of one image against the strongest 400 of the other, so that a change of rank is not
 /// counted.
 Agreement compare(const cv::Mat& first, const cv::Mat& second, double scale, double shift_x, double shift_y) {
-  ExtractionSettings settings;
+  ExtractionSettings settings = ExtractionSettings::published();
   settings.features = 200;
   const FeatureSet a = FeatureExtractor(settings).extract(first);
   settings.features = 400;

@@ -25,7 +25,7 @@ std::vector<Keypoint> detectAfresh(const ExtractionSettings& settings, const cv:
 }
 
 ExtractionSettings settingsFor(int features, double min_response = 3e-6) {
-  ExtractionSettings settings;
+  ExtractionSettings settings = ExtractionSettings::published();
   settings.features = features;
   settings.min_response = min_response;
   return settings;

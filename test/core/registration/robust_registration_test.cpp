@@ -187,11 +187,13 @@ TEST(RobustRegistration, aUsedWorkspaceChangesNothing) {
 
 TEST(RegistrationSettings, chooseTheMethod) {
   ParameterReader reader({{"method", std::string("robust")}, {"min_confidence", 0.25}});
-  const RegistrationSettings settings = RegistrationSettings::load(reader);
+  RegistrationSettings settings = RegistrationSettings::load(reader);
   EXPECT_EQ(settings.method, RegistrationMethod::kRobust);
   EXPECT_EQ(settings.min_confidence, 0.25);
   EXPECT_NE(dynamic_cast<RobustRegistration*>(makeRegistration(settings).get()), nullptr);
-  EXPECT_NE(dynamic_cast<HistogramRegistration*>(makeRegistration({}).get()), nullptr);
+  EXPECT_NE(dynamic_cast<RobustRegistration*>(makeRegistration({}).get()), nullptr) << "the default";
+  settings.method = RegistrationMethod::kHistogram;
+  EXPECT_NE(dynamic_cast<HistogramRegistration*>(makeRegistration(settings).get()), nullptr);
   ParameterReader wrong({{"method", std::string("magic")}});
   EXPECT_THROW(RegistrationSettings::load(wrong), ParameterError);
   EXPECT_FALSE(registrationMethod("magic"));

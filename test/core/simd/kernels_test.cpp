@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/features/box_hessian.h"
+#include "core/features/integral_image.h"
 #include "core/features/maxima.h"
 #include "core/features/synthetic_images.h"
 #include "core/registration/descriptor_table.h"
@@ -27,11 +29,9 @@ class EachPath : public ::testing::TestWithParam<std::size_t> {
 };
 
 std::vector<ExtractionSettings> kindsOfExtraction() {
-  ExtractionSettings spread;
-  spread.half_resolution = true;
-  spread.bucket_columns = 16;
-  spread.bucket_rows = 8;
-  return {ExtractionSettings(), spread};
+  ExtractionSettings few = ExtractionSettings::published();
+  few.features = 40;
+  return {ExtractionSettings::published(), few, ExtractionSettings()};
 }
 
 TEST_P(EachPath, isTheOneInUse) { EXPECT_STREQ(kernels().name, path().name); }
@@ -41,11 +41,49 @@ TEST_P(EachPath, findsTheSameFeatures) {
   for (const int columns : {97, 128, 203, 347, 640}) {
     const cv::Mat image = texture(columns, 211, static_cast<std::uint64_t>(columns));
     for (const ExtractionSettings& settings : kindsOfExtraction()) {
-      const FeatureSet features = FeatureExtractor(settings).extract(image);
+      FeatureExtractor extractor(settings);
+      const FeatureSet first = extractor.extract(image);
+      const FeatureSet second = extractor.extract(image);  // with a threshold that has adapted: much is left out
       useKernels(scalar());
       const FeatureSet expected = FeatureExtractor(settings).extract(image);
       useKernels(path());
-      EXPECT_EQ(features, expected) << path().name << " " << columns;
+      EXPECT_EQ(first, expected) << path().name << " " << columns;
+      EXPECT_EQ(second, expected) << path().name << " " << columns;
+    }
+  }
+}
+
+/// A response that may reach the threshold is computed, to the bit; one that is left out is below it.
+TEST_P(EachPath, leavesOutOnlyWhatStaysBelowTheThreshold) {
+  const int columns = 211;
+  IntegralImage integral;
+  integral.compute(texture(columns, 90, 12));
+  ColumnDifferences all;
+  ColumnDifferences some;
+  all.resize(columns + 1);
+  some.resize(columns + 1);
+  for (const int lobe : {3, 7, 13}) {
+    const BoxFilter filter{lobe};
+    const int count = columns - 2 * filter.half();
+    const FilterRows rows(integral, filter, 45);
+    std::vector<float> expected(static_cast<std::size_t>(count));
+    differenceColumns(rows, 0, columns + 1, all);
+    hessianRow(all, filter, filter.half(), 1, count, expected.data());
+    kernels().difference_columns_xx_yy(rows, 0, columns + 1, some);
+    std::vector<float> sorted = expected;
+    std::sort(sorted.begin(), sorted.end());
+    for (const float threshold : {sorted.front(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], 1.0F}) {
+      std::vector<float> found(static_cast<std::size_t>(count) + 1, 7.0F);
+      const int computed =
+          kernels().hessian_row_above(rows, some, filter, filter.half(), count, threshold, found.data());
+      EXPECT_EQ(found.back(), 7.0F) << "nothing is written beyond";
+      found.pop_back();
+      EXPECT_EQ(count - std::count(found.begin(), found.end(), kBelowThreshold), computed);
+      for (int i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        EXPECT_EQ(hessianAt(integral, filter, filter.half() + i, 45), expected[at]);
+        EXPECT_TRUE(found[at] == expected[at] || (found[at] == kBelowThreshold && expected[at] < threshold));
+      }
     }
   }
 }

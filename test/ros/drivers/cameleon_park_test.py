@@ -1,112 +1,67 @@
 #!/usr/bin/python3
-"""A path of the embedded world is taught and repeated through the drivers of the CAMELEON and of the TARA."""
+"""The loop of the embedded world is taught and repeated through the drivers of the CAMELEON and of the TARA."""
+import importlib.machinery
+import importlib.util
 import math
 import os
+import shutil
 import sys
 import unittest
 
-import actionlib
 import rospy
 import rostest
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry, Path
-from perennial_nav.msg import RepeatAction, RepeatGoal, TeachAction, TeachGoal
-from perennial_nav.srv import SetPark
+from diagnostic_msgs.msg import DiagnosticArray
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from robot_bench import yaw_of  # noqa: E402
-from waiting import Waiter  # noqa: E402
-
-LENGTH_M = 7.0
-SPEED_MPS = 0.5
-LOOK_AHEAD_M = 0.8
-START_OFFSET_M = 0.15
-PATIENCE_S = 150.0  # wall time for one traversal
+DEMO, FOLDER = "", ""
+LOOP_M = 33.0
 
 
-class CameleonParkTest(unittest.TestCase):
+def load(path):
+    loader = importlib.machinery.SourceFileLoader("park_demo", path)
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("park_demo", loader))
+    loader.exec_module(module)
+    return module
+
+
+class CameleonPark(unittest.TestCase):
     def setUp(self):
-        self.bench = Waiter()
-        self.path = []
-        self.track = []  # (x, y, yaw) of the robot, true
-        self.driving = False
-        self.commands = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
-        self.subscribers = [rospy.Subscriber("/loop_path", Path, self.on_path),
-                            rospy.Subscriber("/ground_truth", Odometry, self.on_truth, queue_size=10)]
-        self.teach = actionlib.SimpleActionClient("teach", TeachAction)
-        self.repeat = actionlib.SimpleActionClient("repeat", RepeatAction)
-        self.set_park = rospy.ServiceProxy("/set_park", SetPark)
-        self.bench.wait_for(lambda: self.path and self.track, "the park is there", 60.0)
+        self.demo = load(DEMO)
+        self.diagnostics = {}
+        self.subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics)
+        self.mission = self.demo.Mission(FOLDER)
+        rospy.wait_for_service("set_park")
 
-    def on_path(self, message):
-        with self.bench.changed:
-            self.path = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-            self.bench.changed.notify_all()
+    def on_diagnostics(self, message):
+        for status in message.status:
+            self.diagnostics[status.name] = {value.key: value.value for value in status.values}
 
-    def on_truth(self, message):
-        position = message.pose.pose.position
-        with self.bench.changed:
-            self.track.append((position.x, position.y, yaw_of(message)))
-            self.bench.changed.notify_all()
-        if self.driving:
-            self.steer()
+    def diagnostic(self, node, key):
+        values = [values[key] for name, values in self.diagnostics.items() if node in name and key in values]
+        return float(values[0]) if values else 0.0
 
-    def steer(self):
-        """Aims at a point of the path ahead, as a person who follows it does."""
-        x, y, yaw = self.track[-1]
-        nearest = min(range(len(self.path)), key=lambda i: math.dist(self.path[i], (x, y)))
-        spacing = math.dist(self.path[0], self.path[1])
-        goal = self.path[(nearest + int(LOOK_AHEAD_M / spacing)) % len(self.path)]
-        error = math.remainder(math.atan2(goal[1] - y, goal[0] - x) - yaw, 2.0 * math.pi)
-        twist = Twist()
-        twist.linear.x = SPEED_MPS
-        twist.angular.z = max(-0.5, min(0.5, 1.2 * error))
-        self.commands.publish(twist)
+    def test_teaches_and_repeats_the_loop(self):
+        taught = self.mission.teach()
+        length = taught[-1, 3]
+        self.assertAlmostEqual(length, LOOP_M, delta=1.0)
 
-    def travelled(self):
-        return sum(math.dist(a[:2], b[:2]) for a, b in zip(self.track, self.track[1:]))
-
-    def place(self, lateral_m):
-        answer = self.set_park(lateral_m, 0.0, "", False)
-        self.assertTrue(answer.success, answer.message)
-        with self.bench.changed:
-            self.track = []
-        self.bench.wait_for(lambda: len(self.track) > 3, "the robot stands there")
-        with self.bench.changed:
-            self.track = self.track[-1:]
-
-    def wait_for_done(self, client, what):
-        # Every image of the park wakes the waiter up.
-        self.bench.wait_for(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, what, PATIENCE_S)
-        return client.get_result()
-
-    def test_teach_and_repeat(self):
-        self.assertTrue(self.teach.wait_for_server(rospy.Duration(30.0)))
-        self.assertTrue(self.repeat.wait_for_server(rospy.Duration(30.0)))
-        self.place(0.0)
-        self.teach.send_goal(TeachGoal(map_name="park", overwrite=True))
-        self.bench.wait_for(lambda: self.teach.get_state() == actionlib.GoalStatus.ACTIVE, "teaching")
-        self.driving = True
-        self.bench.wait_for(lambda: self.travelled() > LENGTH_M, "the path is driven", PATIENCE_S)
-        self.driving = False
-        taught = list(self.track)
-        self.teach.cancel_goal()
-        result = self.wait_for_done(self.teach, "the map")
-        self.assertTrue(result.success, result.message)
-        self.assertGreater(result.distance_m, LENGTH_M - 0.5)
-
-        self.place(START_OFFSET_M)
-        self.repeat.send_goal(RepeatGoal(map_name="park", traversals=1))
-        result = self.wait_for_done(self.repeat, "the path is repeated")
-        self.assertTrue(result.success, result.reason)
-        repeated = list(self.track)
-        errors = [min(math.dist(point[:2], place[:2]) for place in taught) for point in repeated[len(repeated) // 2:]]
-        rms = math.sqrt(sum(error * error for error in errors) / len(errors))
-        print("cross-track error over the second half: %.3f m RMS, %.3f m at most" % (rms, max(errors)))
-        self.assertLess(rms, 0.12)
-        self.assertLess(math.dist(repeated[-1][:2], taught[-1][:2]), 0.6)
+        finished, truth, states = self.mission.repeat("offset_start", 0.4, 6.0, self.demo.DAY, None)
+        self.assertTrue(finished)
+        rows = self.demo.errors(taught, truth, states)
+        self.assertGreater(len(rows), 0.8 * length / 0.5 * 5, "nearly every image was registered")
+        self.assertGreater(max(abs(row[1]) for row in rows), 0.3, "it did start beside the path")
+        half = [row[1] for row in rows if row[0] > length / 2]
+        rms = math.sqrt(sum(error * error for error in half) / len(half))
+        print("cross-track error over the second half: %.3f m RMS, %.3f m at most" % (rms, max(map(abs, half))))
+        self.assertLess(rms, 0.10)
+        home = math.dist(truth[-1][1:3], taught[-1, :2])
+        self.assertLess(home, 0.6)
+        # It was the drivers that did it.
+        self.mission.wait(lambda: self.diagnostic("tara_camera", "images") > len(truth), "the camera's diagnostics")
+        self.mission.wait(lambda: self.diagnostic("cameleon_driver", "statuses") > len(truth), "the robot's diagnostics")
 
 
 if __name__ == "__main__":
+    DEMO, FOLDER = rospy.myargv()[1:3]
+    shutil.rmtree(os.path.join(FOLDER, "maps"), ignore_errors=True)
     rospy.init_node("cameleon_park_test")
-    rostest.rosrun("perennial_nav", "cameleon_park", CameleonParkTest)
+    rostest.rosrun("perennial_nav", "cameleon_park", CameleonPark, sys.argv)

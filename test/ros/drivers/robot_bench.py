@@ -14,7 +14,7 @@ class RobotBench(Waiter):
     def __init__(self, command_topic="cmd_vel"):
         super().__init__()
         self.states = []  # (time of the simulator in s, forward, turn, x, y, yaw)
-        self.commands = None  # (forward, turn) to be sent, or None
+        self.commands = None  # (forward, turn, flipper) to be sent, or None
         self.sent_last_s = 0.0  # time of the simulator when a command was sent last
         self.publisher = rospy.Publisher(command_topic, Twist, queue_size=1, tcp_nodelay=True)
         self.subscriber = rospy.Subscriber("cameleon_simulator/state", Odometry, self.on_state, tcp_nodelay=True)
@@ -34,9 +34,9 @@ class RobotBench(Waiter):
         if command is not None:
             self.publisher.publish(twist_of(*command))
 
-    def drive(self, forward, turn=0.0):
+    def drive(self, forward, turn=0.0, flipper=0.0):
         with self.changed:
-            self.commands = (forward, turn)
+            self.commands = (forward, turn, flipper)
 
     def release(self):
         """Sends no more commands. Returns when the last one was sent."""
@@ -81,8 +81,9 @@ def yaw_of(odometry):
     return 2.0 * math.atan2(orientation.z, orientation.w)
 
 
-def twist_of(forward, turn):
+def twist_of(forward, turn, flipper):
     twist = Twist()
+    twist.angular.y = flipper
     twist.linear.x = forward
     twist.angular.z = turn
     return twist

@@ -1,6 +1,11 @@
 #!/usr/bin/python3
-"""A camera on the network, as the robot's video server is one: rtsp_server.py PORT"""
+"""A camera on the network, as the robot's video server is one: rtsp_server.py PORT
+
+Ten images a second that tell when they were taken: eight vertical bars, white for the bits that are set of the time in
+tenths of a second modulo 256, the most significant one left.
+"""
 import sys
+import time
 
 import gi
 
@@ -8,13 +13,34 @@ gi.require_version("Gst", "1.0")
 gi.require_version("GstRtspServer", "1.0")
 from gi.repository import GLib, Gst, GstRtspServer  # noqa: E402
 
+WIDTH, HEIGHT, RATE = 352, 288, 10
+
+
+def picture(tenths):
+    bar = WIDTH // 8
+    row = b"".join((b"\xff" if tenths >> (7 - bit) & 1 else b"\x00") * bar for bit in range(8))
+    return row * HEIGHT
+
+
+def push(source):
+    buffer = Gst.Buffer.new_wrapped(picture(int(10.0 * time.time()) % 256))
+    return source.emit("push-buffer", buffer) == Gst.FlowReturn.OK  # False ends the timer, when nobody looks any more
+
+
+def start(_, media):
+    source = media.get_element().get_by_name_recurse_up("source")
+    GLib.timeout_add(1000 // RATE, push, source)
+
+
 Gst.init(None)
 server = GstRtspServer.RTSPServer()
 server.set_service(sys.argv[1])
 factory = GstRtspServer.RTSPMediaFactory()
-factory.set_launch("( videotestsrc is-live=true pattern=ball ! video/x-raw,format=I420,width=352,height=288,framerate=10/1"
-                   " ! jpegenc ! rtpjpegpay name=pay0 pt=26 )")
+factory.set_launch("( appsrc name=source is-live=true do-timestamp=true format=time"
+                   " caps=video/x-raw,format=GRAY8,width=%d,height=%d,framerate=%d/1 ! videoconvert"
+                   " ! video/x-raw,format=I420 ! jpegenc ! rtpjpegpay name=pay0 pt=26 )" % (WIDTH, HEIGHT, RATE))
 factory.set_shared(True)
+factory.connect("media-configure", start)
 server.get_mount_points().add_factory("/axis-media/media.amp", factory)
 server.attach(None)
 GLib.MainLoop().run()

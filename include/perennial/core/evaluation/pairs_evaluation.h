@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "perennial/core/dataset.h"
+#include "perennial/core/evaluation/disturbance.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/registration.h"
 
@@ -34,6 +35,7 @@ struct PairRecord {
 struct PairsSettings {
   ExtractionSettings extraction;
   RegistrationSettings registration;
+  std::optional<Disturbance> disturbance;  ///< of every view, not of the maps
 };
 
 struct PairsEvaluation {
