@@ -84,7 +84,7 @@ TEST_F(ToolsTest, aSweepIsRunOnceAndReportedOn) {
 
   const Result report = run(std::string(REPORT) + " " + folder_ / "runs" + " --out " + folder_ / "report");
   ASSERT_EQ(report.status, 0) << report.output;
-  for (const char* figure : {"distribution", "time", "drift", "lives", "cost"}) {
+  for (const char* figure : {"distribution", "time", "drift", "frames", "lives", "cost"}) {
     for (const char* kind : {".png", ".svg", ".csv"}) {
       EXPECT_GT(std::filesystem::file_size(folder_ / ("report/" + std::string(figure) + kind)), 100U) << figure << kind;
     }
