@@ -102,10 +102,8 @@ Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_
   // The command holds until the next image: the velocity taught half an image's way ahead is its best mean. Looked up at
   // the image itself, every curve would be entered that much too late.
   const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
-  const Velocity taught = profile_.travellingAt(step.distance_m + preview_m);
-  const Velocity velocity =
-      steer(taught, step.registration.result.displacement_px, focal_length_px_, steering_);
-  return slowed(velocity, speedShare(step.registration.result.confidence, steering_));
+  return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
+               focal_length_px_, steering_);
 }
 
 Observation observationOf(const NavigationStep& step) {

@@ -6,9 +6,7 @@
 namespace perennial {
 namespace {
 
-double limited(double value, double limit) {
-  return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0;
-}
+double finite(double value) { return std::isfinite(value) ? value : 0.0; }
 
 }  // namespace
 
@@ -17,27 +15,13 @@ SteeringSettings SteeringSettings::load(ParameterReader& reader) {
   settings.gain_per_rad = reader.real("gain_per_rad", settings.gain_per_rad, 0.0, 20.0);
   settings.gain_per_px = reader.real("gain_per_px", settings.gain_per_px, 0.0, 1.0);
   settings.max_correction = reader.real("max_correction", settings.max_correction, 0.0, 10.0);
-  settings.max_forward = reader.real("max_forward", settings.max_forward, 0.0, 20.0);
-  settings.max_angular = reader.real("max_angular", settings.max_angular, 0.0, 20.0);
-  settings.slow_below_confidence =
-      reader.real("slow_below_confidence", settings.slow_below_confidence, 0.0, 1.0);
-  settings.stop_below_confidence =
-      reader.real("stop_below_confidence", settings.stop_below_confidence, 0.0, 1.0);
   return settings;
 }
 
-double speedShare(double confidence, const SteeringSettings& settings) {
-  const double stop = settings.stop_below_confidence;
-  if (stop > 0.0 && confidence <= stop) {
-    return 0.0;
-  }
-  if (confidence >= settings.slow_below_confidence) {
-    return 1.0;
-  }
-  return (confidence - stop) / (settings.slow_below_confidence - stop);
-}
-
 Velocity slowed(const Velocity& velocity, double share) {
+  if (!(share > 0.0)) {
+    return {};
+  }
   Velocity result = velocity;
   result.forward *= share;
   result.angular *= share;
@@ -51,11 +35,8 @@ Velocity steer(const Velocity& taught, std::optional<double> displacement_px, st
     correction = focal_length_px ? settings.gain_per_rad * std::atan(*displacement_px / *focal_length_px)
                                  : settings.gain_per_px * *displacement_px;
   }
-  Velocity velocity;
-  velocity.forward = limited(taught.forward, settings.max_forward);
-  velocity.angular = limited(taught.angular + limited(correction, settings.max_correction), settings.max_angular);
-  velocity.flipper = std::isfinite(taught.flipper) ? taught.flipper : 0.0;
-  return velocity;
+  const double limited = std::clamp(finite(correction), -settings.max_correction, settings.max_correction);
+  return {finite(taught.forward), finite(taught.angular) + limited, finite(taught.flipper)};
 }
 
 }  // namespace perennial

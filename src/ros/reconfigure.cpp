@@ -25,10 +25,6 @@ void toConfig(const SteeringSettings& settings, perennial_nav::SteeringConfig& c
   config.gain_per_rad = settings.gain_per_rad;
   config.gain_per_px = settings.gain_per_px;
   config.max_correction = settings.max_correction;
-  config.max_forward = settings.max_forward;
-  config.max_angular = settings.max_angular;
-  config.slow_below_confidence = settings.slow_below_confidence;
-  config.stop_below_confidence = settings.stop_below_confidence;
 }
 
 ExtractionSettings fromConfig(const perennial_nav::ExtractionConfig& config) {
@@ -59,10 +55,6 @@ SteeringSettings fromConfig(const perennial_nav::SteeringConfig& config) {
   settings.gain_per_rad = config.gain_per_rad;
   settings.gain_per_px = config.gain_per_px;
   settings.max_correction = config.max_correction;
-  settings.max_forward = config.max_forward;
-  settings.max_angular = config.max_angular;
-  settings.slow_below_confidence = config.slow_below_confidence;
-  settings.stop_below_confidence = config.stop_below_confidence;
   return settings;
 }
 

@@ -2,95 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 
-#include <cv_bridge/cv_bridge.h>
-#include <opencv2/imgcodecs.hpp>
-#include <sensor_msgs/image_encodings.h>
-
 #include "perennial/core/error.h"
-#include "perennial/core/matches_picture.h"
+#include "perennial/core/human_text.h"
 #include "perennial/ros/conversions.h"
-#include "perennial/ros/parameters.h"
-#include "perennial/ros/reconfigure.h"
-#include "perennial_nav/Processed.h"
-#include "perennial_nav/Registration.h"
 
 namespace perennial {
 namespace {
 
-using perennial_nav::NavigationState;
-
-constexpr char kNode[] = "repeat_navigator";
 /// The odometry has moved when the travelled distance grew by this much; less is its noise.
 constexpr double kProgress_m = 0.02;
-/// Local map messages kept for their images.
-constexpr std::size_t kMessagesKept = 64;
 /// Images kept while their odometry is on its way.
 constexpr std::size_t kImagesKept = 30;
 /// Real time to wait for simulated time to begin.
 const ros::WallDuration kClockPatience(5.0);
-
-std::string seconds(double value) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(1) << value << " s";
-  return text.str();
-}
-
-const std::vector<std::string> kGroups{"extraction", "registration", "steering", "along_path", "odometer"};
+const ros::Duration kWatchPeriod(0.1);
 
 }  // namespace
 
-RepeatNavigatorSettings RepeatNavigatorSettings::load(ParameterReader& reader) {
-  RepeatNavigatorSettings settings;
-  settings.every_image = reader.boolean("every_image", settings.every_image);
-  settings.sensor_timeout_s = reader.real("sensor_timeout_s", settings.sensor_timeout_s, 0.05, 3600.0);
-  settings.give_up_s = reader.real("give_up_s", settings.give_up_s, 0.1, 1e9);
-  settings.stall_timeout_s = reader.real("stall_timeout_s", settings.stall_timeout_s, 0.0, 3600.0);
-  return settings;
-}
-
 RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(std::move(nh)),
-      private_nh_(std::move(private_nh)),
-      settings_(loadNode<RepeatNavigatorSettings>(private_nh_, kGroups)),
-      repeat_settings_{loadGroup<ExtractionSettings>(private_nh_, "extraction"),
-                       loadGroup<RegistrationSettings>(private_nh_, "registration"),
-                       loadGroup<SteeringSettings>(private_nh_, "steering"),
-                       loadGroup<AlongPathSettings>(private_nh_, "along_path")},
-      odometer_(loadGroup<OdometerSettings>(private_nh_, "odometer")),
+      settings_(RepeatNavigatorSettings::load(private_nh)),
+      odometer_(settings_.odometer),
       images_(settings_.every_image ? 0 : kImagesKept),
+      image_watch_(settings_.supervisor.frozen_images),
+      supervisor_(settings_.supervisor),
       traversals_(nh_),
-      gate_(nh_, settings_.sensor_timeout_s),
+      gate_(nh_, settings_.sensor_timeout_s, settings_.limits, settings_.interlock),
+      inputs_(gate_, settings_.interlock),
+      reporter_(nh_, private_nh),
+      live_settings_(private_nh, settings_.repeat, [this] { return run_ ? run_->session.get() : nullptr; }),
       transport_(nh_),
-      extraction_server_(ros::NodeHandle(private_nh_, "extraction")),
-      registration_server_(ros::NodeHandle(private_nh_, "registration")),
-      steering_server_(ros::NodeHandle(private_nh_, "steering")),
-      diagnostics_(nh_, private_nh_),
       server_(nh_, "repeat", false) {
-  registration_publisher_ = nh_.advertise<perennial_nav::Registration>("registration", 1000);
-  state_publisher_ = nh_.advertise<NavigationState>("navigation_state", 100, true);
-  processed_publisher_ = nh_.advertise<perennial_nav::Processed>("processed", 100);
-  matches_publisher_ = transport_.advertise("matches", 1);
-  setUpReconfigure();
-  setUpDiagnostics();
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
-
-  camera_info_subscriber_ = nh_.subscribe("camera_info", 10, &RepeatNavigator::onCameraInfo, this);
+  camera_info_subscriber_ = nh_.subscribe<sensor_msgs::CameraInfo>(
+      "camera_info", 10, [this](const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; });
   odometry_subscriber_ = nh_.subscribe("odom", 1000, &RepeatNavigator::onOdometry, this);
   map_subscriber_ = nh_.subscribe("local_maps", 1000, &RepeatNavigator::onLocalMap, this);
   const uint32_t queue = settings_.every_image ? 0 : 2;
   image_subscriber_ = transport_.subscribe("image", queue, &RepeatNavigator::onImage, this);
-  setState(NavigationState::IDLE, "waiting for a goal");
+  timer_ = nh_.createTimer(kWatchPeriod, [this](const ros::TimerEvent&) { onTimer(); });
+  publishState(ros::Time::now());
   server_.start();
 }
 
 RepeatNavigator::~RepeatNavigator() {
   if (run_) {
-    endRun(false, "the navigator is being shut down");
+    const std::string reason = "the navigator is being shut down";
+    server_.setAborted(endRun(false, reason), reason);
   }
 }
 
@@ -109,17 +70,21 @@ void RepeatNavigator::onGoal() {
 }
 
 void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
-  run_ = std::make_unique<Run>();
+  run_ = std::make_unique<RepeatRun>();
   run_->goal = goal;
   if (!ros::Time::waitForValid(kClockPatience)) {
     throw Error("there is no time: /use_sim_time is set, but nobody publishes /clock");
   }
+  const ros::Time now = ros::Time::now();
   run_->goal.traversals = std::max<std::uint32_t>(1, goal.traversals);
-  run_->newest_stamp = run_->progress_stamp = ros::Time::now();
+  run_->started = run_->progress_stamp = now;
   odometer_.reset();
   images_.clear();
-  setState(NavigationState::STARTING, "waiting for image, odometry and local maps");
-  beginTraversal(goal.start_distance_m, std::nullopt, run_->newest_stamp);
+  image_watch_.reset();
+  gate_.begin();
+  supervisor_.start(now.toSec());
+  publishState(now);
+  beginTraversal(goal.start_distance_m, std::nullopt, now);
   ROS_INFO("repeating map '%s'", goal.map_name.c_str());
 }
 
@@ -132,7 +97,7 @@ void RepeatNavigator::beginTraversal(double start_m, std::optional<double> trave
     }
     run_->session = std::make_unique<RepeatSession>(metadataFromMessage(response, run_->goal.map_name),
                                                     fromMessage(response.profile), response.local_maps,
-                                                    repeat_settings_);
+                                                    settings_.repeat);
   }
   run_->start_m = start_m;
   run_->messages.clear();
@@ -142,26 +107,27 @@ void RepeatNavigator::beginTraversal(double start_m, std::optional<double> trave
 void RepeatNavigator::onPreempt() {
   if (run_) {
     server_.setPreempted(endRun(false, "cancelled"), "cancelled");
-    setState(NavigationState::IDLE, "cancelled; waiting for a goal");
+    supervisor_.rest("cancelled; waiting for a goal");
+    publishState(ros::Time::now());
   }
 }
 
 void RepeatNavigator::fail(const std::string& reason) {
   ROS_ERROR("repeat failed: %s", reason.c_str());
   server_.setAborted(endRun(false, reason), reason);
-  setState(NavigationState::FAILED, reason);
+  supervisor_.fail(reason);
+  publishState(ros::Time::now());
 }
 
 perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::string& reason) {
   gate_.stop();
-  const std::unique_ptr<Run> run = std::move(run_);
+  const std::unique_ptr<RepeatRun> run = std::move(run_);
   perennial_nav::RepeatResult result;
   result.success = static_cast<std::uint8_t>(success);
   result.reason = reason;
   if (run && run->session) {
-    const double here_m = run->session->distance(run->travelled_m);
     result.traversals = success ? run->goal.traversals : run->number - 1;
-    result.distance_m = success ? run->driven_m : run->driven_m + std::max(0.0, here_m - run->start_m);
+    result.distance_m = success ? run->driven_m : run->driven_m + std::max(0.0, run->distance() - run->start_m);
   }
   try {
     traversals_.end(false, ros::Time::now());
@@ -177,7 +143,16 @@ perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::str
 // --- sensors ---------------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
-  if (!run_) {
+  if (run_ && isFromBefore(image->header)) {
+    acknowledge(image);
+    return;
+  }
+  const std::string problem = run_ ? image_watch_.checkStamp(image->header.stamp.toSec()) : "";
+  if (!run_ || !problem.empty()) {
+    if (run_) {
+      supervisor_.setImageProblem(problem);
+      onTimer();  // stops at once
+    }
     acknowledge(image);
     return;
   }
@@ -185,10 +160,8 @@ void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
   processPending();
 }
 
-void RepeatNavigator::onCameraInfo(const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; }
-
 void RepeatNavigator::onOdometry(const nav_msgs::OdometryConstPtr& message) {
-  if (!run_) {
+  if (!run_ || isFromBefore(message->header)) {
     return;
   }
   const std::string problem = odometer_.add(fromMessage(*message));
@@ -210,33 +183,44 @@ void RepeatNavigator::onLocalMap(const perennial_nav::LocalMapConstPtr& message)
     ROS_ERROR_THROTTLE(1.0, "local map refused: %s", error.what());
     return;
   }
-  run_->messages[message->index] = message;
-  if (run_->messages.size() > kMessagesKept) {
-    run_->messages.erase(run_->messages.begin());
-  }
+  run_->keep(message);
   processPending();
 }
 
+bool RepeatNavigator::isFromBefore(const std_msgs::Header& header) const {
+  return !settings_.every_image && header.stamp < run_->started;
+}
+
+std::string RepeatNavigator::missing() const {
+  if (images_.empty()) {
+    return "image";
+  }
+  const auto newest = odometer_.newest();
+  const bool has_odometry = newest && newest->stamp_s >= images_.front()->header.stamp.toSec();
+  return has_odometry ? "local map" : "odometry";
+}
+
 void RepeatNavigator::onTimer() {
-  diagnostics_.update();
+  reporter_.update(images_.dropped(), ignored_maps_, camera_info_ != nullptr);
   if (!run_) {
     return;
   }
-  const double silent_s = (ros::Time::now() - run_->newest_stamp).toSec();
-  if (silent_s <= settings_.sensor_timeout_s) {
+  if (!traversals_.managerAlive()) {
+    fail("map_manager is gone: without it there are no local maps");
     return;
   }
-  std::string missing = "image";
-  if (!images_.empty()) {
-    const auto newest = odometer_.newest();
-    const bool has_odometry = newest && newest->stamp_s >= images_.front()->header.stamp.toSec();
-    missing = has_odometry ? "local map" : "odometry";
+  const NavigationStatus before = supervisor_.status();
+  const ros::Time now = ros::Time::now();
+  const NavigationStatus& status = supervisor_.watch(now.toSec(), missing(), gate_.permit());
+  if (status.mode == NavigationMode::kFailed) {
+    fail(status.reason);
+    return;
   }
-  const std::string reason = "no " + missing + " for " + seconds(silent_s);
-  if (silent_s > settings_.give_up_s) {
-    fail(reason + "; check its topic");
-  } else {
-    setState(NavigationState::STOPPED, reason);
+  if (status.mode == NavigationMode::kStopped && before.mode != NavigationMode::kStopped) {
+    gate_.halt();
+  }
+  if (status.mode != before.mode || status.reason != before.reason) {
+    publishState(now);
   }
 }
 
@@ -256,16 +240,8 @@ void RepeatNavigator::processPending() {
       continue;
     }
     const std::optional<double> travelled_m = odometer_.distanceAt(stamp_s);
-    if (travelled_m) {
-      if (!run_->session->ready(*travelled_m)) {
-        return;  // its local map is still to come
-      }
-      try {
-        process(image, *travelled_m);
-      } catch (const Error& error) {
-        fail(error.what());
-        return;
-      }
+    if (travelled_m && !registerFront(*travelled_m)) {
+      return;
     }
     if (run_ && !images_.empty()) {
       images_.pop();
@@ -274,68 +250,101 @@ void RepeatNavigator::processPending() {
   }
 }
 
+/// Whether the first image of the queue is done with.
+bool RepeatNavigator::registerFront(double travelled_m) {
+  if (!run_->session->ready(travelled_m)) {
+    return false;  // its local map is still to come
+  }
+  try {
+    process(images_.front(), travelled_m);
+    return true;
+  } catch (const Error& error) {
+    fail(error.what());
+    return false;
+  }
+}
+
 void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double travelled_m) {
   const cv::Mat grey = greyImage(image);
   run_->session->requireSuitable(grey, image->encoding);
+  followHand(travelled_m);
+  run_->travelled_m = travelled_m;
+  const std::string problem = image_watch_.checkPixels(image->data.data(), image->data.size(), travelled_m);
+  supervisor_.setImageProblem(problem);
+  if (!problem.empty()) {
+    onTimer();
+    return;
+  }
   run_->session->setFocalLength(focalLength(grey.cols));
   run_->session->stepInto(image->header.stamp.toSec(), travelled_m, grey, step_);
-  const NavigationStep& step = step_;
-  run_->travelled_m = travelled_m;
-  run_->newest_stamp = image->header.stamp;
-  send(step, image);
-  if (run_->session->atEnd(travelled_m)) {
+  drive(step_, image);
+  if (!run_) {
+    return;
+  }
+  report(step_, image);
+  if (run_->atEnd()) {
     completeTraversal(image->header.stamp);
   } else {
-    watchProgress(step, image->header.stamp);
+    watchProgress(image->header.stamp);
   }
 }
 
-void RepeatNavigator::send(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
-  const bool last = run_->number == run_->goal.traversals && run_->session->atEnd(run_->travelled_m);
-  if (last) {
+/// The odometer counts driving backwards like forwards, as paths are taught; but what a person backs, the repeat has to drive
+/// again.
+void RepeatNavigator::followHand(double travelled_m) {
+  const bool backwards = odometer_.newest() && odometer_.newest()->forward_m_s < 0.0;
+  if (backwards && gate_.permit().kind == MotionPermit::Kind::kManual) {
+    run_->session->shift(-2.0 * (travelled_m - run_->travelled_m));
+  }
+}
+
+void RepeatNavigator::drive(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
+  const ros::Time& stamp = image->header.stamp;
+  const NavigationStatus status =
+      supervisor_.see(stamp.toSec(), run_->travelled_m, sightOf(step.registration.result), gate_.permit());
+  if (status.mode == NavigationMode::kFailed) {
+    fail(status.reason);
+  } else if (run_->number == run_->goal.traversals && run_->atEnd()) {
     gate_.stop();
-  } else if (!gate_.drive(step.velocity, image->header.stamp)) {
+  } else if (!gate_.drive(slowed(step.velocity, status.speed_factor), stamp)) {
     ROS_WARN_THROTTLE(1.0, "an image came too late to drive by");
   }
-  perennial_nav::Registration registration = toMessage(step);
-  registration.header = image->header;
-  registration.traversal = traversals_.id();
-  registration_publisher_.publish(registration);
-  traversals_.countRegistration();
+}
 
-  state_ = NavigationState::REPEATING;
-  reason_ = step.registration.result.displacement_px ? "" : "this image could not be registered; driving by odometry";
+void RepeatNavigator::report(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
+  run_->count(step);
+  reporter_.registration(step, image->header, traversals_.id());
+  traversals_.countRegistration();
   publishState(image->header.stamp, &step);
+  const RegistrationResult& result = step.registration.result;
   perennial_nav::RepeatFeedback feedback;
   feedback.distance_m = step.distance_m;
   feedback.traversal = run_->number;
-  feedback.has_displacement = static_cast<std::uint8_t>(registration.has_displacement);
-  feedback.displacement_px = registration.displacement_px;
-  feedback.inliers = registration.inliers;
-  feedback.state = state_;
+  feedback.has_displacement = static_cast<std::uint8_t>(result.displacement_px.has_value());
+  feedback.displacement_px = result.displacement_px.value_or(0.0);
+  feedback.inliers = result.inliers;
+  feedback.state = nameOf(supervisor_.status().mode);
   server_.publishFeedback(feedback);
-  if (matches_publisher_.getNumSubscribers() > 0) {
-    publishMatches(step, image);
-  }
+  reporter_.matches(step, image, *run_);
 }
 
-void RepeatNavigator::watchProgress(const NavigationStep& step, const ros::Time& stamp) {
+void RepeatNavigator::watchProgress(const ros::Time& stamp) {
   const bool moved = std::abs(run_->travelled_m - run_->progress_m) > kProgress_m;
-  if (moved || std::abs(step.velocity.forward) < 1e-3) {
+  if (moved || std::abs(gate_.newest().linear.x) < 1e-3) {
     run_->progress_m = run_->travelled_m;
     run_->progress_stamp = stamp;
     return;
   }
   const double stalled_s = (stamp - run_->progress_stamp).toSec();
   if (settings_.stall_timeout_s > 0.0 && stalled_s > settings_.stall_timeout_s) {
-    fail("the robot is driven, but its odometry has not moved for " + seconds(stalled_s) +
+    fail("the robot is driven, but its odometry has not moved for " + humanSeconds(stalled_s) +
          ": is it blocked, or the odometry topic wrong?");
   }
 }
 
 void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
-  Run& run = *run_;
-  const double overshoot_m = run.session->distance(run.travelled_m) - run.session->length();
+  RepeatRun& run = *run_;
+  const double overshoot_m = run.distance() - run.session->length();
   run.driven_m += run.session->length() - run.start_m;
   try {
     const std::uint32_t updated = traversals_.end(true, stamp);
@@ -345,9 +354,12 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
     ROS_ERROR("%s", error.what());  // the map stays as it was; the robot can go on
   }
   if (run.number == run.goal.traversals) {
-    const std::string reason = "repeated '" + run.goal.map_name + "' " + std::to_string(run.number) + " times";
+    const std::string reason = "repeated '" + run.goal.map_name + "' " +
+                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") + "; recognised " +
+                               std::to_string(run.recognised) + " of " + std::to_string(run.images) + " images";
+    supervisor_.finish(reason);
+    publishState(stamp);
     server_.setSucceeded(endRun(true, reason), reason);
-    setState(NavigationState::FINISHED, reason);
     return;
   }
   ++run.number;
@@ -356,60 +368,12 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
 
 // --- what others see -------------------------------------------------------------------------------------------------
 
-void RepeatNavigator::setState(const std::string& state, const std::string& reason) {
-  if (state != state_) {
-    ROS_INFO("%s: %s", state.c_str(), reason.c_str());
-  }
-  state_ = state;
-  reason_ = reason;
-  publishState(ros::Time::now(), nullptr);
-}
-
 void RepeatNavigator::publishState(const ros::Time& stamp, const NavigationStep* step) {
-  NavigationState message;
-  message.header.stamp = stamp;
-  message.state = state_;
-  message.reason = reason_;
-  message.command = gate_.newest();
-  if (run_) {
-    message.map = run_->goal.map_name;
-    message.traversal = run_->number;
-  }
-  if (run_ && run_->session) {
-    message.distance_m = run_->session->distance(run_->travelled_m);
-    message.length_m = run_->session->length();
-  }
-  if (step != nullptr) {
-    const RegistrationResult& result = step->registration.result;
-    message.has_displacement = static_cast<std::uint8_t>(result.displacement_px.has_value());
-    message.displacement_px = result.displacement_px.value_or(0.0);
-    message.inliers = result.inliers;
-  }
-  state_publisher_.publish(message);
-}
-
-void RepeatNavigator::publishMatches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
-  const auto entry = run_->messages.find(step.local_map);
-  if (entry == run_->messages.end()) {
-    return;
-  }
-  const perennial_nav::LocalMap& message = *entry->second;
-  const cv::Mat map_image = cv::imdecode(message.image.data, cv::IMREAD_GRAYSCALE);
-  const ActiveMap map = fromMessage(message);
-  const cv::Mat picture =
-      drawMatches(map_image, greyImage(image), map.alternatives[step.registration.alternative].features, step.view,
-                  step.registration.result);
-  matches_publisher_.publish(
-      cv_bridge::CvImage(image->header, sensor_msgs::image_encodings::BGR8, picture).toImageMsg());
+  reporter_.state(stamp, supervisor_.status(), gate_.newest(), run_.get(), step);
 }
 
 void RepeatNavigator::acknowledge(const sensor_msgs::ImageConstPtr& image) {
-  perennial_nav::Processed processed;
-  processed.header = image->header;
-  processed.node = kNode;
-  processed.has_command = static_cast<std::uint8_t>(run_ != nullptr);
-  processed.command = gate_.newest();
-  processed_publisher_.publish(processed);
+  reporter_.processed(image->header, run_ != nullptr, gate_.newest());
 }
 
 std::optional<double> RepeatNavigator::focalLength(int image_width) const {
@@ -417,60 +381,6 @@ std::optional<double> RepeatNavigator::focalLength(int image_width) const {
     return std::nullopt;
   }
   return camera_info_->K[0] * image_width / camera_info_->width;
-}
-
-void RepeatNavigator::setUpReconfigure() {
-  extraction_server_.setCallback([this](perennial_nav::ExtractionConfig& config, uint32_t level) {
-    if (level == kFirstReconfigure || run_) {
-      toConfig(repeat_settings_.extraction, config);  // a run keeps the settings its map was taught with
-    } else {
-      repeat_settings_.extraction = fromConfig(config);
-    }
-  });
-  registration_server_.setCallback([this](perennial_nav::RegistrationConfig& config, uint32_t level) {
-    if (level == kFirstReconfigure) {
-      toConfig(repeat_settings_.registration, config);
-      return;
-    }
-    repeat_settings_.registration = fromConfig(config);
-    if (run_ && run_->session) {
-      run_->session->setRegistration(repeat_settings_.registration);
-    }
-  });
-  steering_server_.setCallback([this](perennial_nav::SteeringConfig& config, uint32_t level) {
-    if (level == kFirstReconfigure) {
-      toConfig(repeat_settings_.steering, config);
-      return;
-    }
-    repeat_settings_.steering = fromConfig(config);
-    if (run_ && run_->session) {
-      run_->session->setSteering(repeat_settings_.steering);
-    }
-  });
-}
-
-void RepeatNavigator::setUpDiagnostics() {
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("navigation", [this](auto& status) { diagnose(status); });
-  timer_ = nh_.createTimer(ros::Duration(0.1), [this](const ros::TimerEvent&) { onTimer(); });
-}
-
-void RepeatNavigator::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
-  const std::string text = reason_.empty() ? state_ : state_ + ": " + reason_;
-  if (state_ == NavigationState::FAILED) {
-    status.summary(DiagnosticStatus::ERROR, text);
-  } else if (state_ == NavigationState::STOPPED || (state_ == NavigationState::REPEATING && !reason_.empty())) {
-    status.summary(DiagnosticStatus::WARN, text);
-  } else {
-    status.summary(DiagnosticStatus::OK, text);
-  }
-  status.add("map", run_ ? run_->goal.map_name : "none");
-  status.add("traversal", run_ ? run_->number : 0);
-  status.add("distance_m", run_ && run_->session ? run_->session->distance(run_->travelled_m) : 0.0);
-  status.add("camera_info", camera_info_ ? "known" : "missing: the gain per pixel is used");
-  status.add("images dropped", images_.dropped());
-  status.add("stale local maps ignored", ignored_maps_);
 }
 
 }  // namespace perennial

@@ -1,5 +1,7 @@
 #include "perennial/ros/traversal_client.h"
 
+#include <utility>
+
 #include "perennial/core/error.h"
 #include "perennial_nav/BeginTraversal.h"
 #include "perennial_nav/EndTraversal.h"
@@ -7,8 +9,7 @@
 namespace perennial {
 
 TraversalClient::TraversalClient(ros::NodeHandle nh)
-    : begin_(nh.serviceClient<perennial_nav::BeginTraversal>("begin_traversal")),
-      end_(nh.serviceClient<perennial_nav::EndTraversal>("end_traversal")) {}
+    : nh_(std::move(nh)), begin_(nh_.serviceClient<perennial_nav::BeginTraversal>("begin_traversal")) {}
 
 perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& map, double start_m,
                                                              const ros::Time& stamp) {
@@ -21,6 +22,9 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   }
   if (!service.response.success) {
     throw MapError(service.response.message);
+  }
+  if (!end_.isValid()) {
+    end_ = nh_.serviceClient<perennial_nav::EndTraversal>("end_traversal", true);
   }
   open_ = true;
   id_ = service.response.traversal;

@@ -66,17 +66,23 @@ TEST(Steering, aPositiveDisplacementTurnsLeft) {
   EXPECT_NEAR(steer({}, 50.0, std::nullopt, settings).angular, settings.gain_per_px * 50.0, 1e-12);
 }
 
-TEST(Steering, limitsEverythingAndNeverGivesNan) {
+TEST(Steering, limitsItsCorrectionAndNeverGivesNan) {
   SteeringSettings settings;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1e6, 1e6);
   for (int i = 0; i < 1000; ++i) {
-    const Velocity velocity = steer({any(random), any(random), 0.0}, any(random), 500.0, settings);
-    EXPECT_LE(std::abs(velocity.forward), settings.max_forward);
-    EXPECT_LE(std::abs(velocity.angular), settings.max_angular);
+    const Velocity taught{any(random), any(random), 0.0};
+    const Velocity velocity = steer(taught, any(random), 500.0, settings);
+    EXPECT_EQ(velocity.forward, taught.forward);
+    EXPECT_LE(std::abs(velocity.angular - taught.angular), settings.max_correction + 1e-6);
   }
   const Velocity velocity = steer({kNan, kNan, kNan}, kNan, 500.0, settings);
   EXPECT_TRUE(std::isfinite(velocity.forward) && std::isfinite(velocity.angular) && std::isfinite(velocity.flipper));
+}
+
+TEST(Steering, slowedKeepsTheCurve) {
+  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.5), (Velocity{0.5, 0.2, 0.1})) << "flippers do not move the robot along";
+  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.0), Velocity{});
 }
 
 OdometrySample at(double stamp_s, double x_m, double y_m = 0.0) { return {stamp_s, x_m, y_m, 0.0, 0.0}; }

@@ -1,147 +1,17 @@
 // Teach and repeat in the embedded world, on the core alone: the loop is closed through rendered images.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "core/map_test_support.h"
-#include "perennial/core/map_manager.h"
-#include "perennial/core/odometer.h"
-#include "perennial/core/repeat_session.h"
-#include "perennial/core/teach_session.h"
-#include "perennial/park/park_simulation.h"
+#include "park/closed_loop.h"
 #include "perennial/strategies/score_based.h"
 #include "perennial/strategies/static_map.h"
 
 namespace perennial {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
-
-/// Where the robot was, from the taught path.
-struct TrackError {
-  double arc_length_m = 0.0;
-  double lateral_m = 0.0;
-};
-
-double rms(const std::vector<TrackError>& errors) {
-  double sum = 0.0;
-  for (const TrackError& error : errors) {
-    sum += error.lateral_m * error.lateral_m;
-  }
-  return errors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
-double largest(const std::vector<TrackError>& errors) {
-  double worst = 0.0;
-  for (const TrackError& error : errors) {
-    worst = std::max(worst, std::abs(error.lateral_m));
-  }
-  return worst;
-}
-
-class ClosedLoop : public ::testing::Test {
- protected:
-  static OdometrySample sampleOf(const park::Odometry& odometry) {
-    return {static_cast<double>(odometry.stamp_ns) * 1e-9, odometry.pose.x, odometry.pose.y, odometry.forward,
-            odometry.angular};
-  }
-
-  /// Drives the loop once with the scripted driver and stores the map. Remembers the taught track.
-  TeachSummary teach(park::ParkSimulation& park) {
-    MapMetadata metadata;
-    metadata.name = "loop";
-    metadata.camera = "camera";
-    TeachSession session(folder_ / "loop.perennial", metadata, true, {}, settings_.extraction);
-    taught_.clear();
-    Odometer odometer;
-    park.place(0.0, 0.0);
-    park.setDriver(true);
-    while (!park.driverFinished()) {
-      const park::ParkFrame frame = park.step();
-      for (const park::Odometry& odometry : frame.odometry) {
-        EXPECT_EQ(odometer.add(sampleOf(odometry)), "");
-      }
-      const double stamp_s = static_cast<double>(frame.stamp_ns) * 1e-9;
-      session.addImage(stamp_s, *odometer.distanceAt(stamp_s), frame.image, "mono8");
-      const Velocity command = park.driverCommand();
-      session.addCommand(odometer.newestDistance(), command);
-      park.command(command);
-      taught_.push_back(frame.true_pose);
-    }
-    park.setDriver(false);
-    return session.finish(odometer.newestDistance());
-  }
-
-  /// Distance from the taught track (not from the ideal path), and where along it.
-  TrackError errorOf(const park::Pose& pose) const {
-    TrackError best;
-    double nearest = 1e9;
-    for (std::size_t i = 0; i < taught_.size(); ++i) {
-      const double dx = pose.x - taught_[i].x;
-      const double dy = pose.y - taught_[i].y;
-      if (std::hypot(dx, dy) < nearest) {
-        nearest = std::hypot(dx, dy);
-        best.lateral_m = -std::sin(taught_[i].heading) * dx + std::cos(taught_[i].heading) * dy;
-        best.arc_length_m = static_cast<double>(i) / static_cast<double>(taught_.size());
-      }
-    }
-    return best;
-  }
-
-  /// Repeats the path `traversals` times without a stop; the errors of each traversal.
-  std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager, int traversals) {
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings_);
-    session.setFocalLength(park.settings().camera.geometry.fx);
-    Odometer odometer;
-    std::vector<std::vector<TrackError>> errors;
-    double start_m = 0.0;
-    std::optional<double> travelled_m;
-    for (int traversal = 0; traversal < traversals; ++traversal) {
-      manager.beginTraversal(static_cast<double>(park.nowNs()) * 1e-9);
-      session.beginTraversal(start_m, travelled_m);
-      errors.emplace_back();
-      do {
-        const park::ParkFrame frame = park.step();
-        for (const park::Odometry& odometry : frame.odometry) {
-          EXPECT_EQ(odometer.add(sampleOf(odometry)), "");
-        }
-        const double stamp_s = static_cast<double>(frame.stamp_ns) * 1e-9;
-        travelled_m = odometer.distanceAt(stamp_s);
-        for (const std::uint32_t index : manager.due(session.distance(*travelled_m))) {
-          session.add(manager.activeMap(index));
-        }
-        const NavigationStep step = session.step(stamp_s, *travelled_m, frame.image);
-        manager.observe(step.local_map, step.local_map_distance_m, observationOf(step));
-        park.command(step.velocity);
-        errors.back().push_back(errorOf(frame.true_pose));
-        lost_ = std::abs(errors.back().back().lateral_m) > 2.0;
-        registered_ += step.registration.result.displacement_px.has_value();
-        ++images_;
-      } while (!session.atEnd(*travelled_m) && !lost_ && errors.back().size() < 2000);
-      EXPECT_FALSE(lost_ && !may_get_lost_) << "more than 2 m beside the path";
-      EXPECT_LT(errors.back().size(), 2000U) << "did not finish the loop";
-      start_m = session.distance(*travelled_m) - session.length();
-      manager.endTraversal(true, static_cast<double>(park.nowNs()) * 1e-9);
-    }
-    return errors;
-  }
-
-  MapManager manager(std::shared_ptr<MapStrategy> strategy) const {
-    return MapManager(MapFile(folder_ / "loop.perennial"), std::move(strategy));
-  }
-
-  TemporaryFolder folder_;
-  RepeatSettings settings_;
-  bool may_get_lost_ = false;
-  bool lost_ = false;
-  std::vector<park::Pose> taught_;
-  int images_ = 0;
-  int registered_ = 0;
-};
 
 TEST_F(ClosedLoop, convergesFromBesideThePath) {
   park::ParkSettings settings;

@@ -48,6 +48,8 @@ class FakeRobot:
         self.image_changes = {}  # fields of the image message to set otherwise
         self.odometry_changes = {}
         self.sends_images = self.sends_odometry = True
+        self.frozen = False  # the camera repeats one image
+        self.images_taken = 0
         self.commands = []
         self.answered = set()
         self.lock = threading.Lock()
@@ -112,7 +114,11 @@ class FakeRobot:
         message = Image()
         message.header.stamp, message.header.frame_id = stamp, "camera"
         message.width, message.height, message.step, message.encoding = WIDTH, HEIGHT, WIDTH, "mono8"
-        message.data = view(self.x % self.loop_m, self.left_px).tobytes()
+        pixels = view(max(self.x, 0.0) % self.loop_m, self.left_px)
+        if not self.frozen:  # every real camera has noise
+            self.images_taken += 1
+            pixels[0, :4] = np.frombuffer(np.uint32(self.images_taken).tobytes(), np.uint8)
+        message.data = pixels.tobytes()
         for name, value in self.image_changes.items():
             setattr(message, name, value)
         return message
@@ -122,6 +128,7 @@ class FakeRobot:
         self.x, self.left_px, self.speed, self.loop_m = x, 0, None, math.inf
         self.image_changes, self.odometry_changes = {}, {}
         self.sends_images = self.sends_odometry = True
+        self.frozen = False
         with self.lock:
             self.commands = []
 

@@ -35,7 +35,7 @@ struct NavigationStep {
   std::vector<std::uint32_t> positions; ///< of the features registered: position in the stored local map
   ActiveRegistration registration;
   FeatureSet view;
-  Velocity velocity;                    ///< to send to the robot
+  Velocity velocity;                    ///< to send to the robot, at the taught speed
 };
 
 /// Follows a taught path: from an image and the travelled distance to a velocity. What the repeat navigator runs, and
@@ -56,6 +56,9 @@ class RepeatSession {
   }
   bool atEnd(double travelled_m) const { return distance(travelled_m) >= length_m_; }
   double length() const { return length_m_; }
+
+  /// The robot's place along the path changes by this; for what the odometer does not know, as a person driving it back.
+  void shift(double distance_m) { start_m_ += distance_m; }
 
   void add(ActiveMap map) { window_.add(std::move(map)); }
   /// Whether the local map for this place has come.

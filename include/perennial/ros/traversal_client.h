@@ -22,12 +22,16 @@ class TraversalClient {
 
   void countRegistration() { ++registrations_; }
   bool open() const { return open_; }
+  /// Whether the manager that opened the traversal is still there: its connection, kept open, tells at once. True while no
+  /// traversal is open.
+  bool managerAlive() const { return !open_ || end_.isValid(); }
   /// Identifies the open traversal; local maps of any other one are stale.
   std::uint32_t id() const { return id_; }
 
  private:
+  ros::NodeHandle nh_;
   ros::ServiceClient begin_;
-  ros::ServiceClient end_;
+  mutable ros::ServiceClient end_;  ///< persistent while a traversal is open
   bool open_ = false;
   std::uint32_t id_ = 0;
   std::uint32_t registrations_ = 0;

@@ -19,8 +19,7 @@ double approachForward(double current, double wanted, double elapsed_s, const Ve
 
 }  // namespace
 
-VelocityLimits VelocityLimits::load(ParameterReader& reader) {
-  VelocityLimits limits;
+VelocityLimits VelocityLimits::load(ParameterReader& reader, VelocityLimits limits) {
   limits.max_forward_mps = reader.real("max_forward_mps", limits.max_forward_mps, 0.0, 9.999);
   limits.max_backward_mps = reader.real("max_backward_mps", limits.max_backward_mps, 0.0, 9.999);
   limits.max_turn_radps = reader.real("max_turn_radps", limits.max_turn_radps, 0.0, 10.0);

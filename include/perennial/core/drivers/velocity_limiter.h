@@ -15,8 +15,9 @@ struct VelocityLimits {
   double max_deceleration_mps2 = 2.0;
   double max_turn_acceleration_radps2 = 2.0;
 
-  /// Keys as the members are called. Throws ParameterError.
-  static VelocityLimits load(ParameterReader& reader);
+  /// Keys as the members are called; `limits` holds the defaults. Throws ParameterError.
+  static VelocityLimits load(ParameterReader& reader, VelocityLimits limits);
+  static VelocityLimits load(ParameterReader& reader) { return load(reader, {}); }
 };
 
 /// The nearest velocity within the limits.

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/Twist.h>
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+
+#include "perennial/core/navigation_supervisor.h"
+#include "perennial/core/repeat_session.h"
+#include "perennial/ros/repeat_run.h"
+#include "perennial_nav/NavigationState.h"
+
+namespace perennial {
+
+/// Everything that the navigator tells others: registration, navigation_state (latched), matches (drawn only while somebody
+/// subscribes), processed, diagnostics.
+class NavigationReporter {
+ public:
+  NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh);
+
+  /// `run`: the goal being served; `step`: what the newest image gave; nullptr when there is none.
+  void state(const ros::Time& stamp, const NavigationStatus& status, const geometry_msgs::Twist& command,
+             const RepeatRun* run, const NavigationStep* step);
+  void registration(const NavigationStep& step, const std_msgs::Header& header, std::uint32_t traversal);
+  void matches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image, const RepeatRun& run);
+  /// Done with an image; `drives`: whether the command is meant for it.
+  void processed(const std_msgs::Header& header, bool drives, const geometry_msgs::Twist& command);
+
+  /// To be called regularly; numbers for diagnostics.
+  void update(std::size_t dropped_images, std::size_t ignored_maps, bool has_camera_info);
+
+ private:
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  image_transport::ImageTransport transport_;
+  ros::Publisher registration_publisher_;
+  ros::Publisher state_publisher_;
+  ros::Publisher processed_publisher_;
+  image_transport::Publisher matches_publisher_;
+  diagnostic_updater::Updater diagnostics_;
+  perennial_nav::NavigationState state_;
+  std::size_t dropped_images_ = 0;
+  std::size_t ignored_maps_ = 0;
+  bool has_camera_info_ = false;
+};
+
+}  // namespace perennial

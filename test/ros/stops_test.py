@@ -1,0 +1,342 @@
+#!/usr/bin/env python3
+"""Everything that stops a robot which repeats a path, each with the real nodes and a fake robot."""
+import math
+import os
+import shutil
+import sys
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist
+from perennial_nav.msg import NavigationState
+from sensor_msgs.msg import Joy, LaserScan, Range
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, Trigger
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from fake_robot import HEIGHT, WIDTH, FakeRobot, wait_until  # noqa: E402
+from stack import BOTH, LENGTH_M, Stack  # noqa: E402
+
+FOLDER = ""  # of the maps; from the command line
+LIMIT_MPS, ACCELERATION_MPS2, LONGEST_STEP_S = 1.5, 2.0, 0.25  # as in repeat_navigator.yaml and command_gate.cpp
+
+
+class GuardedRobot(FakeRobot):
+    """A fake robot with a person at a joystick and three sensors for obstacles, all content."""
+
+    def __init__(self):
+        super().__init__()
+        self.publishers = {
+            "joy": rospy.Publisher("/joy", Joy, queue_size=10),
+            "range": rospy.Publisher("/obstacle_range", Range, queue_size=10),
+            "scan": rospy.Publisher("/obstacle_scan", LaserScan, queue_size=10),
+            "flag": rospy.Publisher("/obstacle", Bool, queue_size=10),
+        }
+        self.calm()
+
+    def calm(self):
+        self.silent = set()  # names of what says nothing
+        self.held, self.range_m, self.scan_m, self.flag = True, 5.0, 5.0, False
+
+    def restart(self, x=0.0):
+        super().restart(x)
+        self.calm()
+
+    def tick(self, seconds):
+        super().tick(seconds)
+        messages = {
+            "joy": Joy(buttons=[0, 0, int(self.held)]),
+            "range": Range(min_range=0.02, max_range=6.0, range=self.range_m),
+            "scan": LaserScan(angle_min=-0.2, angle_increment=0.1, range_max=8.0, ranges=[self.scan_m] * 5),
+            "flag": Bool(self.flag),
+        }
+        for name, message in messages.items():
+            if name not in self.silent:
+                self.publishers[name].publish(message)
+
+
+class Stops(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = GuardedRobot()
+        cls.stack = Stack(cls.robot)
+        for publisher in cls.robot.publishers.values():
+            wait_until(lambda p=publisher: p.get_num_connections() > 0, "the navigator's safety inputs")
+        cls.stop_topic = rospy.Publisher("/e_stop", Bool, queue_size=1, latch=True)
+        cls.by_hand = rospy.Publisher("/teleop_vel", Twist, queue_size=10)
+        wait_until(lambda: cls.stop_topic.get_num_connections() > 0, "the emergency stop's subscriber")
+        wait_until(lambda: cls.by_hand.get_num_connections() > 0, "the subscriber of commands by hand")
+        rospy.wait_for_service("/e_stop")
+        cls.stop_service = rospy.ServiceProxy("/e_stop", SetBool)
+        cls.resume = rospy.ServiceProxy("/resume", Trigger)
+        result = cls.stack.teach_path("path")
+        assert result.success, result.message
+
+    def setUp(self):
+        """A repeat of the path, in its middle."""
+        self.stack.begin_repeat("path")
+        self.stack.drive(lambda: self.robot.x > LENGTH_M / 4)
+        self.assertFalse(self.stack.done(self.stack.repeat))
+        self.assertGreater(self.robot.command().linear.x, 0.1)
+        self.assert_state(NavigationState.REPEATING, "by sight")
+
+    def tearDown(self):
+        self.stack.end(self.stack.repeat)
+
+    def steps(self, number):
+        for _ in range(number):
+            if not self.stack.done(self.stack.repeat):
+                self.robot.step(BOTH)
+
+    def assert_state(self, state, reason):
+        """Time goes on meanwhile: what watches the robot lives by it."""
+        for _ in range(10):
+            newest = self.stack.states[-1]
+            if newest.state == state and reason in newest.reason:
+                return
+            self.robot.step(BOTH if self.robot.sends_images and not self.robot.image_changes else None)
+        self.fail("not '%s' because of '%s', but '%s' because of '%s'" % (state, reason, newest.state, newest.reason))
+
+    def assert_stands(self, reason, state=NavigationState.STOPPED):
+        wait_until(self.robot.stands, "the robot to stop because of " + reason)
+        self.assert_state(state, reason)
+        self.steps(3)
+        self.assertTrue(self.robot.stands(), "it must go on standing")
+        self.assertFalse(self.stack.done(self.stack.repeat), "the goal waits")
+
+    def assert_goes_on(self, steps=1):
+        self.steps(steps)
+        self.assert_state(NavigationState.REPEATING, "by sight")
+        self.steps(2)
+        self.assertGreater(self.robot.command().linear.x, 0.1)
+
+    def assert_fails(self, reason):
+        result = self.stack.result(self.stack.repeat)
+        self.assertFalse(result.success)
+        self.assertIn(reason, result.reason)
+        wait_until(self.robot.stands, "the robot to stop")
+        self.assert_state(NavigationState.FAILED, reason)
+
+    # --- people ---
+
+    def release(self):
+        self.steps(3)
+        self.assertTrue(self.robot.stands(), "releasing must not start the robot")
+        self.assert_state(NavigationState.STOPPED, "resume")
+        self.assertTrue(self.resume().success)
+        self.assert_goes_on()
+
+    def test_emergency_stop_by_topic(self):
+        self.stop_topic.publish(True)
+        wait_until(self.robot.stands, "the robot to stop at once, without any time going by")
+        self.assert_stands("emergency stop")
+        self.assertFalse(self.resume().success, "still engaged")
+        self.stop_topic.publish(False)
+        self.release()
+
+    def test_emergency_stop_by_service(self):
+        self.assertTrue(self.stop_service(True).success)
+        wait_until(self.robot.stands, "the robot to stop at once, without any time going by")
+        self.assert_stands("emergency stop")
+        self.assertTrue(self.stop_service(False).success)
+        self.release()
+
+    def test_dead_man_lets_go(self):
+        self.robot.held = False
+        self.robot.tick(0.0)
+        self.assert_stands("not held")
+        self.robot.held = True
+        self.assert_goes_on(2)
+
+    def test_dead_man_is_silent(self):
+        self.robot.silent = {"joy"}
+        self.steps(7)
+        self.assert_stands("no sign of life")
+        self.robot.silent = set()
+        self.assert_goes_on(2)
+
+    def drive_by_hand(self, forward, steps):
+        command = Twist()
+        command.linear.x = forward
+        for _ in range(steps):
+            self.by_hand.publish(command)
+            self.robot.step(BOTH)
+
+    def test_a_person_takes_over_and_lets_go(self):
+        self.drive_by_hand(-0.3, 1)
+        self.assert_state(NavigationState.STOPPED, "by hand")
+        self.drive_by_hand(-0.3, 15)
+        self.assertAlmostEqual(self.robot.command().linear.x, -0.3, places=6)
+        self.steps(5)
+        self.assert_stands("by hand until")
+        self.assert_goes_on(10)
+
+    def test_another_program_commands_the_robot(self):
+        command = Twist()
+        command.linear.x = 0.2
+        self.robot.teleop.publish(command)
+        self.assert_state(NavigationState.STOPPED, "commands the robot, too")
+        self.steps(2)
+        self.assert_stands(rospy.get_name())
+        self.assert_goes_on(12)
+
+    # --- obstacles ---
+
+    def test_range_finder_slows_then_holds(self):
+        self.robot.range_m = 1.0
+        self.steps(5)
+        self.assertAlmostEqual(self.robot.command().linear.x, 0.25, delta=0.02)
+        self.robot.range_m = 0.3
+        self.steps(3)
+        self.assert_stands("in the way, 0.3 m", NavigationState.HOLDING)
+        self.robot.range_m = 5.0
+        self.assert_goes_on(2)
+
+    def test_laser_scanner_holds(self):
+        self.robot.scan_m = 0.4
+        self.steps(3)
+        self.assert_stands("in the way, 0.4 m", NavigationState.HOLDING)
+        self.robot.scan_m = 5.0
+        self.assert_goes_on(2)
+
+    def test_obstacle_detector_holds(self):
+        self.robot.flag = True
+        self.steps(3)
+        self.assert_stands("in the way", NavigationState.HOLDING)
+        self.robot.flag = False
+        self.assert_goes_on(2)
+
+    def test_an_obstacle_that_stays_ends_the_goal(self):
+        self.robot.flag = True
+        self.steps(60)
+        self.assert_fails("nothing changed")
+
+    def test_silent_sensors_stop(self):
+        for name, reason in (("range", "range finder"), ("scan", "laser scanner"), ("flag", "obstacle detector")):
+            self.robot.silent = {name}
+            self.steps(7)
+            self.assert_stands(reason + " is silent")
+            self.robot.silent = set()
+            self.assert_goes_on(2)
+
+    def test_sensor_that_does_not_know_stops(self):
+        self.robot.range_m = math.nan
+        self.steps(2)
+        self.assert_stands("does not know")
+
+    # --- the camera and its path ---
+
+    def step_blind(self, noise):
+        pixels = noise.randint(0, 255, HEIGHT * WIDTH).astype(np.uint8)
+        self.robot.image_changes = {"data": pixels.tobytes()}
+        self.robot.step(BOTH)
+
+    def test_blind_it_slows_holds_and_goes_on_when_it_sees(self):
+        noise = np.random.RandomState(7)
+        lost_at = self.robot.x
+        states = []
+        for _ in range(60):
+            self.step_blind(noise)
+            states.append(self.stack.states[-1].state)
+            if states[-1] == NavigationState.DEGRADED and len(states) > 5:
+                self.assertAlmostEqual(self.robot.command().linear.x, 0.25, delta=0.02)
+            if states[-1] == NavigationState.HOLDING:
+                break
+        self.assertIn(NavigationState.DEGRADED, states)
+        self.assert_state(NavigationState.HOLDING, "not recognised for 1.0 m")
+        self.assertAlmostEqual(self.robot.x - lost_at, 1.0, delta=0.15)
+        self.robot.image_changes = {}
+        self.assert_goes_on()
+
+    def test_blind_for_too_long_it_gives_up(self):
+        noise = np.random.RandomState(7)
+        for _ in range(200):
+            self.step_blind(noise)
+            if self.stack.done(self.stack.repeat):
+                break
+        self.assert_fails("not recognised")
+
+    def test_frozen_camera(self):
+        self.robot.frozen = True
+        self.steps(14)
+        self.assert_stands("frozen")
+        self.robot.frozen = False
+        self.assert_goes_on()
+
+    def test_image_stamps_that_go_back(self):
+        self.robot.image_changes = {"header": self.header(-1.0)}
+        self.robot.step()
+        self.assert_state(NavigationState.STOPPED, "stamps of the images go back")
+        wait_until(self.robot.stands, "the robot to stop")
+        self.robot.image_changes = {}
+        self.assert_goes_on()
+
+    def header(self, seconds):
+        message = self.robot.image_message(rospy.Time.from_sec(self.robot.time + seconds))
+        return message.header
+
+    def test_odometry_stamps_that_go_back(self):
+        message = self.robot.odometry_message(rospy.Time.from_sec(self.robot.time - 1.0), 0.5)
+        self.robot.odometry.publish(message)
+        self.assert_fails("goes back in time")
+
+    def test_time_that_goes_back(self):
+        self.robot.sends_images = self.robot.sends_odometry = False
+        self.robot.time -= 5.0
+        for _ in range(10):
+            self.robot.step()
+        self.robot.time += 10.0  # for those that remember
+        self.assert_fails("time went back")
+
+    def test_time_that_jumps_forward(self):
+        self.robot.sends_images = self.robot.sends_odometry = False
+        self.robot.time += 1000.0
+        self.robot.step()
+        self.assert_state(NavigationState.STOPPED, "no ")
+        wait_until(self.robot.stands, "the robot to stop")
+        self.robot.sends_images = self.robot.sends_odometry = True
+        self.assert_goes_on(2)
+
+    # --- limits, and what others see ---
+
+    def test_limits_hold_whatever_is_asked_for(self):
+        with self.robot.lock:
+            first = len(self.robot.commands)
+        for forward in (100.0, -100.0):
+            self.drive_by_hand(forward, 20)
+        with self.robot.lock:
+            speeds = [command.linear.x for command in self.robot.commands[first:]]
+        self.assertGreater(max(speeds), 0.9 * LIMIT_MPS, "it did drive fast")
+        self.assertLessEqual(max(map(abs, speeds)), LIMIT_MPS + 1e-9)
+        speeding = [after - before for before, after in zip(speeds, speeds[1:]) if abs(after) > abs(before)]
+        self.assertLessEqual(max(map(abs, speeding)), ACCELERATION_MPS2 * LONGEST_STEP_S + 1e-9)
+
+    def test_diagnostics_tell_the_state_and_why(self):
+        seen = []
+        subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, seen.append, queue_size=100)
+        wait_until(lambda: subscriber.get_num_connections() >= 3, "diagnostics")
+        self.stop_topic.publish(True)
+        self.assert_stands("emergency stop")
+
+        def told():
+            self.robot.step(BOTH)
+            texts = [status.message for array in seen for status in array.status]
+            return any("stopped: the emergency stop is engaged" in text for text in texts)
+
+        wait_until(told, "the reason in diagnostics")
+        subscriber.unregister()
+        self.stop_topic.publish(False)
+        self.release()
+
+
+if __name__ == "__main__":
+    FOLDER = rospy.myargv()[1]
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    rospy.init_node("stops_test")
+    try:
+        rostest.rosrun("perennial_nav", "stops", Stops, sys.argv)
+    finally:
+        shutil.rmtree(FOLDER, ignore_errors=True)
