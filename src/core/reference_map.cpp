@@ -45,6 +45,10 @@ auto parsed(const std::string& content, const std::string& file, const Read& rea
     return read(storage);
   } catch (const cv::Exception& error) {
     throw DatasetError(file + ": is no OpenCV FileStorage YAML: " + error.err);
+  } catch (const DatasetError&) {
+    throw;
+  } catch (const std::exception& error) {  // the parser throws the standard library's, too
+    throw DatasetError(file + ": is no OpenCV FileStorage YAML: " + error.what());
   }
 }
 

@@ -50,7 +50,8 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
 
 RepeatNavigator::~RepeatNavigator() {
   if (run_) {
-    endRun(false, "the navigator is being shut down");
+    const std::string reason = "the navigator is being shut down";
+    server_.setAborted(endRun(false, reason), reason);
   }
 }
 
@@ -311,6 +312,7 @@ void RepeatNavigator::drive(const NavigationStep& step, const sensor_msgs::Image
 }
 
 void RepeatNavigator::report(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
+  run_->count(step);
   reporter_.registration(step, image->header, traversals_.id());
   traversals_.countRegistration();
   publishState(image->header.stamp, &step);
@@ -352,10 +354,12 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
     ROS_ERROR("%s", error.what());  // the map stays as it was; the robot can go on
   }
   if (run.number == run.goal.traversals) {
-    const std::string reason = "repeated '" + run.goal.map_name + "' " + std::to_string(run.number) + " times";
-    server_.setSucceeded(endRun(true, reason), reason);
+    const std::string reason = "repeated '" + run.goal.map_name + "' " +
+                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") + "; recognised " +
+                               std::to_string(run.recognised) + " of " + std::to_string(run.images) + " images";
     supervisor_.finish(reason);
-    publishState(ros::Time::now());
+    publishState(stamp);
+    server_.setSucceeded(endRun(true, reason), reason);
     return;
   }
   ++run.number;

@@ -22,6 +22,8 @@ struct RepeatRun {
   double driven_m = 0.0;                   ///< in the traversals before the current one
   double travelled_m = 0.0;                ///< by the odometer, at the newest image
   ros::Time started;                       ///< when the goal came
+  std::size_t images = 0;                  ///< registered, in all traversals
+  std::size_t recognised = 0;              ///< of these: with a displacement
   double progress_m = 0.0;                 ///< travelled distance when the robot last moved
   ros::Time progress_stamp;
   std::map<std::uint32_t, perennial_nav::LocalMapConstPtr> messages;  ///< local maps held, for their images
@@ -29,6 +31,11 @@ struct RepeatRun {
   /// Place along the path; 0 before the map has been opened.
   double distance() const { return session ? session->distance(travelled_m) : 0.0; }
   bool atEnd() const { return session && session->atEnd(travelled_m); }
+
+  void count(const NavigationStep& step) {
+    ++images;
+    recognised += step.registration.result.displacement_px ? 1 : 0;
+  }
 
   /// Keeps a local map's message, the newest few of them.
   void keep(const perennial_nav::LocalMapConstPtr& message) {

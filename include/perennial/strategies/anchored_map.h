@@ -36,7 +36,7 @@ class AnchoredMap : public MapStrategy {
     double feature_noise_px = 2.0;  ///< standard deviation of a feature's place in an image
     double cohort_noise_px =
         2.0;                 ///< of what a traversal's displacement misses beside that: parallax above all
-    double reach_px = 20.0;  ///< pairs that differ more from the displacement are outliers
+    double reach_px = 10.0;  ///< pairs that differ more from the displacement are outliers
     double min_lead =
         1.5;  ///< nothing is added unless the displacement has so many times the support of any other
   };

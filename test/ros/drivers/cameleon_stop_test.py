@@ -10,6 +10,8 @@ import unittest
 import roslib.packages
 import rospy
 import rostest
+from nav_msgs.msg import Odometry
+from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from robot_bench import RobotBench  # noqa: E402
@@ -106,6 +108,22 @@ class CameleonStopTest(unittest.TestCase):
         still = self.bench.now()
         self.bench.wait_loops(25)  # the commander goes on: the connection of its topic does not need the master
         self.assertFalse(self.bench.moved_since(still))
+
+    def test_a_latched_emergency_stop_holds_a_driver_that_starts_later(self):
+        stop = rospy.Publisher("emergency_stop", Bool, queue_size=1, latch=True)
+        stop.publish(True)
+        odometry = []
+        subscriber = rospy.Subscriber("odom", Odometry, lambda message: (odometry.append(message), self.bench.notify()))
+        self.start_driver()
+        self.bench.wait_for(lambda: len(odometry) > 10 and stop.get_num_connections() > 0, "the driver is connected")
+        begin = self.bench.now()
+        self.bench.drive(0.3)
+        self.bench.wait_loops(40)
+        self.assertFalse(self.bench.moved_since(begin))
+        stop.publish(False)
+        self.bench.wait_until_moving("a fresh command moves it once the stop is cleared")
+        stop.unregister()
+        subscriber.unregister()
 
     def test_refuses_wrong_parameters(self):
         for index, (key, value) in enumerate((("max_forward_mps", -1), ("no_such_parameter", 1), ("robot_port", 70000))):
