@@ -25,8 +25,8 @@
 namespace perennial {
 namespace {
 
-constexpr int kWidth = 200;
-constexpr int kHeight = 120;
+constexpr int kWidth = 320;
+constexpr int kHeight = 200;
 constexpr int kPlaces = 11;
 constexpr double kStep_m = 0.1;
 
@@ -34,7 +34,7 @@ cv::Mat viewAt(int left_px) {
   cv::Mat noise(kHeight, kWidth + 100, CV_8UC1);
   cv::theRNG().state = 77U;
   cv::randu(noise, 0, 256);
-  cv::GaussianBlur(noise, noise, {0, 0}, 2.0);
+  cv::GaussianBlur(noise, noise, {0, 0}, 3.0);
   cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
   return noise(cv::Rect(50 - left_px, 0, kWidth, kHeight)).clone();
 }
@@ -51,7 +51,7 @@ double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PE
 class LongRun : public ::testing::Test {
  protected:
   LongRun() {
-    extraction_.features = 100;
+    extraction_.features = 300;
     MapMetadata metadata;
     metadata.name = "loop";
     TeachSession session(file(), metadata, false, {}, extraction_);

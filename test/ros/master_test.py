@@ -70,8 +70,10 @@ class Restarted(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         for process in cls.processes:
-            process.kill()
-            process.communicate()
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+            process.stdout.close()
 
     def test_stops_and_starts_anew(self):
         robot = self.stack.robot
