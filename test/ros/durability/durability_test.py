@@ -22,7 +22,7 @@ class Durability(unittest.TestCase):
     def setUpClass(cls):
         cls.flag = os.path.join(FOLDER, "full")
         cls.file = os.path.join(FOLDER, "maps", "path.perennial")
-        full_disk = {"LD_PRELOAD": PRELOAD, "FULL_DISK": cls.flag}
+        full_disk = {"LD_PRELOAD": os.environ.get("PERENNIAL_PRELOAD_FIRST", "") + PRELOAD, "FULL_DISK": cls.flag}
         cls.second = Node("map_manager_2", {"ROS_NAMESPACE": "/second"},
                           ["_map_folder:=" + os.path.join(FOLDER, "maps"), "_strategy:=latest"])
         cls.stack = Stack([Node("teach_recorder", full_disk), Node("map_manager", full_disk), Node("repeat_navigator")])
