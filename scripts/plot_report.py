@@ -179,12 +179,13 @@ def plot_time(runs, axes):
     rows, times = [], []
     style = styles(runs)
     for run in runs:
+        many = len({row["traversal"] for row in run.rows}) > 60
         points = sorted((time, median([abs(e) for e in errors]), light) for time, light, errors in run.by_traversal()
                         if errors)  # fmt: skip
         for light, fill in LIGHTS.items():
             of_light = [p for p in points if p[2] == light]
-            axes.plot([p[0] for p in of_light], [p[1] for p in of_light], linestyle="none", marker="o", markersize=4.5,
-                      fillstyle=fill, markerfacecoloralt="none", color=style[run.name]["color"], alpha=0.45,
+            axes.plot([p[0] for p in of_light], [p[1] for p in of_light], linestyle="none", marker="o", markersize=3 if many else 5,
+                      fillstyle=fill, markerfacecoloralt="none", color=style[run.name]["color"], alpha=0.25 if many else 0.45,
                       markeredgewidth=0.8, zorder=2)  # fmt: skip
             rows += [(run.name, p[0].isoformat() + "Z", light, "%.6g" % p[1]) for p in of_light]
         smooth = [median([p[1] for p in points[max(0, i - 4):i + 5]]) for i in range(len(points))]
@@ -204,28 +205,52 @@ def plot_time(runs, axes):
     return ("run", "time", "light", "median_error_px"), rows
 
 
-def plot_drift(runs, axes):
+def windows(run, key):
+    """(traversal, signed errors of the last ten traversals) with the errors grouped by key(row)."""
+    names = sorted({row["traversal"] for row in run.rows})
+    errors = {name: [] for name in names}
+    for row in run.rows:
+        if row["error"] is not None:
+            errors[row["traversal"]].append((key(row), row["error"]))
+    for number in range(1, len(names) + 1):
+        groups = {}
+        for name in names[max(0, number - 10):number]:
+            for group, error in errors[name]:
+                groups.setdefault(group, []).append(error)
+        if groups:
+            yield number, list(groups.values())
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def plot_signed(runs, axes, key, value, name):
     rows = []
     style = styles(runs)
     for run in runs:
-        window, xs, ys = [], [], []
-        for traversal, (_, _, errors) in enumerate(run.by_traversal(), 1):
-            window = (window + [errors])[-10:]
-            values = [error for some in window for error in some]
-            if values:
-                xs.append(traversal)
-                ys.append(sum(values) / len(values))
-        axes.plot(xs, ys, label=run.label, linewidth=1.6, **style[run.name])
-        rows += [(run.name, x, "%.6g" % y) for x, y in zip(xs, ys)]
+        points = [(number, value(groups)) for number, groups in windows(run, key)]
+        axes.plot([p[0] for p in points], [p[1] for p in points], label=run.label, linewidth=1.6, **style[run.name])
+        rows += [(run.name, number, "%.6g" % y) for number, y in points]
     axes.axhline(0.0, color="#888888", linewidth=0.8)
-    axes.set_yscale("symlog", linthresh=1.0)
-    set_ticks(axes.yaxis, *axes.get_ylim())
     axes.set_xlabel("traversal")
-    axes.set_ylabel("mean signed error of ten traversals, px")
-    axes.set_title("Drift: where the frame of the map goes")
     axes.grid(alpha=0.3)
     legend(axes)
-    return ("run", "traversal", "mean_signed_error_px"), rows
+    return ("run", "traversal", name), rows
+
+
+def plot_drift(runs, axes):
+    axes.set_ylabel("mean signed error of ten traversals, px")
+    axes.set_title("Drift: where the frames of the maps go, all places together")
+    return plot_signed(runs, axes, lambda row: "", lambda groups: mean(groups[0]), "mean_signed_error_px")
+
+
+def plot_frames(runs, axes):
+    """Places drift to different sides, so that their mean hides it."""
+    axes.set_ylabel("mean over places, px")
+    axes.set_title("Drift, place by place: magnitude of the mean signed error of ten traversals")
+    return plot_signed(runs, axes, lambda row: row["distance_m"],
+                       lambda groups: mean([abs(mean(group)) for group in groups]), "mean_frame_error_px")  # fmt: skip
 
 
 def plot_lives(runs, axes):
@@ -277,7 +302,8 @@ def plot_cost(runs, axes):
     return ("run", "registrations_to", "registration_ms", "learning_ms"), rows
 
 
-FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("lives", plot_lives),
+FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("frames", plot_frames),
+           ("lives", plot_lives),
            ("cost", plot_cost)]
 
 

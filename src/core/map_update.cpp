@@ -9,19 +9,11 @@
 #include <tuple>
 #include <utility>
 
-#include "perennial/core/popcount_clones.h"
+#include "core/registration/descriptor_table.h"
+#include "core/simd/kernels.h"
 
 namespace perennial {
 namespace {
-
-PERENNIAL_POPCOUNT_CLONES
-int distanceToNearest(const Descriptor& descriptor, const std::vector<Descriptor>& others) {
-  int nearest = Descriptor::kBits + 1;
-  for (const Descriptor& other : others) {
-    nearest = std::min(nearest, hammingDistance(descriptor, other));
-  }
-  return nearest;
-}
 
 std::vector<std::size_t> unpaired(const Observation& observation) {
   std::vector<bool> paired(observation.view.size(), false);
@@ -40,9 +32,18 @@ std::vector<std::size_t> unpaired(const Observation& observation) {
 }
 
 void sortLeastAlikeFirst(std::vector<std::size_t>& candidates, const LocalMap& map, const FeatureSet& view) {
-  std::vector<int> distance(view.size(), 0);
+  DescriptorTable table;
+  table.resize(map.size());
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    table.set(i, map.features.descriptors[i]);
+  }
+  std::vector<std::uint16_t> distances(map.size());
+  std::vector<int> distance(view.size(), Descriptor::kBits + 1);  // to the nearest in the map
   for (const std::size_t j : candidates) {
-    distance[j] = distanceToNearest(view.descriptors[j], map.features.descriptors);
+    kernels().hamming_distances(view.descriptors[j], table, 0, map.size(), distances.data());
+    if (!distances.empty()) {
+      distance[j] = *std::min_element(distances.begin(), distances.end());
+    }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&](std::size_t a, std::size_t b) { return distance[a] > distance[b]; });

@@ -43,7 +43,7 @@ class ReplayInputTest : public ::testing::Test {
     const Dataset dataset = loadDataset(folder_.path());
     problems_.clear();
     images_ = 0;
-    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), ExtractionSettings::published(),
+    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), {ExtractionSettings::published(), false},
                            FeatureCache(folder_ / "cache"), 2, problems_,
                            [&](std::size_t done) { images_ = std::max(images_, done); });
   }

@@ -93,6 +93,7 @@ runs:
 
 TEST_F(Sweep, shippedOnesAreValid) {
   EXPECT_EQ(loadSweep(std::string(SWEEPS) + "/strategies.yaml", {}).size(), 9U);
+  EXPECT_EQ(loadSweep(std::string(SWEEPS) + "/strategies_as_published.yaml", {}).size(), 9U);
   EXPECT_EQ(loadSweep(std::string(SWEEPS) + "/paper_grid.yaml", {}).size(), 64U);
 }
 

@@ -54,12 +54,14 @@ class ToolsTest : public ::testing::Test {
       cv::imwrite(folder_ / ("data/" + image), noise(cv::Rect(12 * t, 0, 300, 150)));
       manifest << "t" << t << ",2020-0" << t + 1 << "-01T12:00:00Z,0," << image << "," << -12 * t << "\n";
     }
-    std::ofstream(folder_ / "sweep.yaml") << "runs:\n  - strategy: [static, latest]\n  - strategy: score_based\n"
-                                             "    set: {exchange: [0.05, 0.5]}\n";
+    std::ofstream(folder_ / "sweep.yaml")
+        << "runs:\n  - strategy: [static, latest]\n  - strategy: score_based\n"
+           "    set: {exchange: [0.05, 0.5]}\n";
   }
 
   Result evaluate(const std::string& arguments) {
-    return run(std::string(EVALUATE) + " " + folder_ / "data" + " --cache " + folder_ / "cache" + " " + arguments);
+    return run(std::string(EVALUATE) + " " + folder_ / "data" + " --cache " + folder_ / "cache" + " " +
+               arguments);
   }
 
   test_tools::TemporaryFolder folder_;
@@ -84,9 +86,10 @@ TEST_F(ToolsTest, aSweepIsRunOnceAndReportedOn) {
 
   const Result report = run(std::string(REPORT) + " " + folder_ / "runs" + " --out " + folder_ / "report");
   ASSERT_EQ(report.status, 0) << report.output;
-  for (const char* figure : {"distribution", "time", "drift", "lives", "cost"}) {
+  for (const char* figure : {"distribution", "time", "drift", "frames", "lives", "cost"}) {
     for (const char* kind : {".png", ".svg", ".csv"}) {
-      EXPECT_GT(std::filesystem::file_size(folder_ / ("report/" + std::string(figure) + kind)), 100U) << figure << kind;
+      EXPECT_GT(std::filesystem::file_size(folder_ / ("report/" + std::string(figure) + kind)), 100U)
+          << figure << kind;
     }
   }
   EXPECT_EQ(CsvTable::load(folder_ / "report/comparisons.csv").rows().size(), 6U) << "four runs in pairs";
@@ -101,7 +104,8 @@ TEST_F(ToolsTest, mistakesAreSaidBeforeAnythingIsDone) {
   const std::string out = " --out " + folder_ / "run";
   const Result unknown = evaluate("--strategy staitc" + out);
   EXPECT_EQ(unknown.status, 1);
-  EXPECT_NE(unknown.output.find("score_based"), std::string::npos) << "lists those there are: " << unknown.output;
+  EXPECT_NE(unknown.output.find("score_based"), std::string::npos)
+      << "lists those there are: " << unknown.output;
   const Result key = evaluate("--strategy score_based --set exchagne=0.1" + out);
   EXPECT_EQ(key.status, 1);
   EXPECT_NE(key.output.find("exchagne"), std::string::npos) << key.output;
@@ -110,6 +114,41 @@ TEST_F(ToolsTest, mistakesAreSaidBeforeAnythingIsDone) {
   EXPECT_NE(range.output.find("[0, 1]"), std::string::npos) << range.output;
   EXPECT_EQ(evaluate("--strategy static").status, 1) << "no --out";
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
+}
+
+TEST_F(ToolsTest, malformedTablesEndItBeforeAnythingIsDone) {
+  const std::string header = "traversal,stamp,distance_m,image,offset_px\n";
+  const std::string first = "t0,2020-01-01T12:00:00Z,0,0.png,0\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"traversal,stamp,distance_m,image\nt0,2020-01-01T12:00:00Z,0,0.png\n", "manifest.csv:1: "},
+      {header + first + "t0,2020-02-01T12:00:00Z,0,1.png,0\n",
+       "manifest.csv:3: traversal 't0' has this place already"},
+      {header + first + "t1,2019-02-01T12:00:00Z,0,1.png,0\n", "manifest.csv:3: time goes backwards"},
+      {header + first + "t1,yesterday,0,1.png,0\n", "manifest.csv:3: "}};
+  for (const auto& [table, message] : cases) {
+    std::ofstream(folder_ / "data/manifest.csv") << table;
+    const Result result = evaluate("--strategy static --out " + folder_ / "run");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.output.find(message), std::string::npos) << result.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "run/summary.json"));
+  }
+}
+
+TEST_F(ToolsTest, whatCannotBeUsedIsNamedAndTheSweepGoesOn) {
+  cv::imwrite(folder_ / "data/4.png", cv::Mat(100, 300, CV_8UC1, cv::Scalar(9)));  // line 6: of another size
+  std::ofstream(folder_ / "data/manifest.csv", std::ios::app)
+      << "t3,2020-04-01T12:00:00Z,5,3.png,0\n";  // line 8
+  const Result result =
+      evaluate("--teach t0 --sweep " + folder_ / "sweep.yaml" + " --out " + folder_ / "runs");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.output.find("manifest.csv:6: the image has another size"), std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("manifest.csv:8: the place at 5"), std::string::npos) << result.output;
+  for (const char* run : {"static", "latest", "score_based,exchange=0.05", "score_based,exchange=0.5"}) {
+    EXPECT_EQ(CsvTable::load(folder_ / ("runs/" + std::string(run) + "/errors.csv")).rows().size(),
+              std::size_t{kTraversals - 2})
+        << run;
+  }
 }
 
 TEST_F(ToolsTest, aBadImageIsNamedAndTheRestGoesOn) {

@@ -128,7 +128,7 @@ void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& 
   const int end = first_x + count + layer.filter.half() + 1;
   const Kernels& use = kernels();
   const FilterRows rows(integral, layer.filter, y);
-  if (threshold_ == kBelowThreshold || layer.dense_rows > 0) {
+  if (threshold_ == kBelowThreshold || layer.dense_rows > 0 || !use.looks_first) {
     layer.dense_rows = std::max(0, layer.dense_rows - 1);
     use.difference_columns(rows, begin, end, differences_);
     use.hessian_row(differences_, layer.filter, first_x, count, responses);

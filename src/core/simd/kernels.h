@@ -19,6 +19,8 @@ struct Kernels {
 
   /// See differenceColumns() in box_hessian.h.
   void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
+  /// Whether hessian_row_above is faster than hessian_row: a compiler makes more of a loop that leaves nothing out.
+  bool looks_first;
   /// See differenceColumnsXxYy() in box_hessian.h.
   void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
   /// See hessianRowAbove() in box_hessian.h.

@@ -191,8 +191,8 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,      differenceColumns, differenceColumnsXxYy, hessianRowAbove,
-                                   hessianRow, nextPeak,          boxSumRow,             hammingDistances};
+  static constexpr Kernels kTable{kName,      differenceColumns, true,      differenceColumnsXxYy, hessianRowAbove,
+                                  hessianRow, nextPeak,          boxSumRow, hammingDistances};
   return &kTable;
 }
 
