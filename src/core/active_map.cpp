@@ -33,7 +33,8 @@ ActiveRegistration registerView(const Registration& registration, const ActiveMa
 void registerInto(const Registration& registration, const ActiveMap& map, const FeatureSet& view,
                   ActiveRegistrationWorkspace& workspace, ActiveRegistration& result) {
   for (std::size_t k = 0; k < map.alternatives.size(); ++k) {
-    registration.registerInto(map.alternatives[k].features, view, workspace.registration, workspace.candidate);
+    registration.registerInto(map.alternatives[k].features, view, workspace.registration,
+                              workspace.candidate);
     if (k == 0 || workspace.candidate.inliers > result.result.inliers) {
       result.alternative = k;
       std::swap(result.result, workspace.candidate);

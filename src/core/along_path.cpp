@@ -8,12 +8,14 @@ namespace perennial {
 AlongPathSettings AlongPathSettings::load(ParameterReader& reader) {
   AlongPathSettings settings;
   settings.enabled = reader.boolean("enabled", settings.enabled);
-  settings.correction_length_m = reader.real("correction_length_m", settings.correction_length_m, 0.05, 1000.0);
+  settings.correction_length_m =
+      reader.real("correction_length_m", settings.correction_length_m, 0.05, 1000.0);
   settings.max_correction = reader.real("max_correction", settings.max_correction, 0.0, 0.9);
   return settings;
 }
 
-std::optional<double> placeOfView(const PlaceEvidence& before, const PlaceEvidence& here, const PlaceEvidence& after) {
+std::optional<double> placeOfView(const PlaceEvidence& before, const PlaceEvidence& here,
+                                  const PlaceEvidence& after) {
   if (before.inliers > here.inliers && before.inliers >= after.inliers) {
     return before.distance_m;
   }

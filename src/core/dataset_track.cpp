@@ -46,9 +46,9 @@ DatasetTrack trackOf(const std::vector<DatasetRow>& rows, double speed_m_s) {
   DatasetTrack track;
   track.stamps_replaced = !drivable(rows);
   for (const DatasetRow& row : rows) {
-    track.image_stamps_s.push_back(track.stamps_replaced
-                                       ? rows.front().stamp_s + (row.distance_m - rows.front().distance_m) / speed_m_s
-                                       : row.stamp_s);
+    track.image_stamps_s.push_back(
+        track.stamps_replaced ? rows.front().stamp_s + (row.distance_m - rows.front().distance_m) / speed_m_s
+                              : row.stamp_s);
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     OdometrySample sample;

@@ -20,7 +20,8 @@ void learn(LocalMap& map, const MapStrategy& strategy, const Observation& observ
   strategy.update(map, observation);
   const std::string problem = map.problem();
   if (!problem.empty()) {
-    throw Error("strategy " + strategy.name() + " broke local map " + std::to_string(map.index) + ": " + problem);
+    throw Error("strategy " + strategy.name() + " broke local map " + std::to_string(map.index) + ": " +
+                problem);
   }
 }
 

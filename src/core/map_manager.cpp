@@ -11,8 +11,8 @@
 namespace perennial {
 namespace {
 
-/// Observations of a local map are complete when the robot registers against one this many places further on: distance
-/// estimates may waver between neighbours.
+/// Observations of a local map are complete when the robot registers against one this many places further on:
+/// distance estimates may waver between neighbours.
 constexpr std::uint32_t kPlacesUntilLearned = 2;
 
 }  // namespace
@@ -22,11 +22,13 @@ MapManagerSettings MapManagerSettings::load(ParameterReader& reader) {
   settings.lookahead_m = reader.real("lookahead_m", settings.lookahead_m, 0.1, 1000.0);
   settings.lookbehind_m = reader.real("lookbehind_m", settings.lookbehind_m, 0.0, 1000.0);
   settings.gate.min_inliers = reader.integer("min_inliers_for_update", settings.gate.min_inliers, 1, 10000);
-  settings.gate.min_confidence = reader.real("min_confidence_for_update", settings.gate.min_confidence, 0.0, 1.0);
+  settings.gate.min_confidence =
+      reader.real("min_confidence_for_update", settings.gate.min_confidence, 0.0, 1.0);
   return settings;
 }
 
-MapManager::MapManager(MapFile file, std::shared_ptr<const MapStrategy> strategy, const MapManagerSettings& settings)
+MapManager::MapManager(MapFile file, std::shared_ptr<const MapStrategy> strategy,
+                       const MapManagerSettings& settings)
     : file_(std::move(file)), strategy_(std::move(strategy)), settings_(settings) {}
 
 void MapManager::beginTraversal(double stamp_s) {

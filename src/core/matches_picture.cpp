@@ -19,12 +19,12 @@ const cv::Scalar kAxis(150, 150, 150);
 const cv::Scalar kCorrect(80, 200, 60);
 const cv::Scalar kIncorrect(60, 60, 230);
 const cv::Scalar kUnmatched(190, 170, 90);
-constexpr int kGap = 8;          // px between the images
-constexpr int kHeader = 30;      // px for the line of text on top
-constexpr int kHistogram = 150;  // px for the histogram below
+constexpr int kGap = 8;                // px between the images
+constexpr int kHeader = 30;            // px for the line of text on top
+constexpr int kHistogram = 150;        // px for the histogram below
 constexpr double kLineOpacity = 0.35;  // of few lines; hundreds must not hide the images
 constexpr int kFewLines = 40;
-constexpr int kShownHalf = 20;   // bins shown on each side of 0, at least
+constexpr int kShownHalf = 20;  // bins shown on each side of 0, at least
 
 void write(cv::Mat& canvas, const std::string& text, cv::Point where, double size = 0.5,
            const cv::Scalar& colour = kText) {
@@ -56,8 +56,9 @@ void drawFeatures(cv::Mat& canvas, const FeatureSet& features, cv::Point offset)
   }
 }
 
-void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view, const RegistrationResult& result,
-               FeatureState state, cv::Point map_offset, cv::Point view_offset, bool lines) {
+void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view,
+               const RegistrationResult& result, FeatureState state, cv::Point map_offset,
+               cv::Point view_offset, bool lines) {
   const cv::Scalar& colour = state == FeatureState::kMatchedCorrectly ? kCorrect : kIncorrect;
   for (std::size_t i = 0; i < result.states.size(); ++i) {
     if (result.states[i] != state || result.partners[i] < 0) {
@@ -74,7 +75,9 @@ void drawPairs(cv::Mat& canvas, const FeatureSet& map, const FeatureSet& view, c
   }
 }
 
-double lineOpacity(int lines) { return kLineOpacity * std::sqrt(1.0 * kFewLines / std::max(kFewLines, lines)); }
+double lineOpacity(int lines) {
+  return kLineOpacity * std::sqrt(1.0 * kFewLines / std::max(kFewLines, lines));
+}
 
 /// Right-aligned, on one line.
 void drawLegend(cv::Mat& canvas, int baseline_y) {
@@ -109,13 +112,15 @@ void drawHistogram(cv::Mat canvas, const RegistrationResult& result) {
   const int bottom = canvas.rows - 24;
   const double step = static_cast<double>(canvas.cols) / (2 * shown + 1);
   const auto x_of = [&](double bin) { return cvRound((bin + shown + 0.5) * step); };
-  const int fullest = histogram.counts.empty() ? 0 : *std::max_element(histogram.counts.begin(), histogram.counts.end());
+  const int fullest =
+      histogram.counts.empty() ? 0 : *std::max_element(histogram.counts.begin(), histogram.counts.end());
   cv::line(canvas, {0, bottom}, {canvas.cols, bottom}, kAxis);
   for (std::size_t position = 0; position < histogram.counts.size(); ++position) {
     const int bin = static_cast<int>(position) - histogram.half();
     const int height = (bottom - 22) * histogram.counts[position] / std::max(1, fullest);
     const double centre = histogram.centre(position);
-    const bool agrees = result.displacement_px && std::abs(centre - *result.displacement_px) <= 1.5 * histogram.bin_width_px;
+    const bool agrees =
+        result.displacement_px && std::abs(centre - *result.displacement_px) <= 1.5 * histogram.bin_width_px;
     if (height > 0) {
       cv::rectangle(canvas, {x_of(bin - 0.42), bottom - height}, {x_of(bin + 0.42), bottom - 1},
                     agrees ? kCorrect : kIncorrect, cv::FILLED);
@@ -124,15 +129,16 @@ void drawHistogram(cv::Mat canvas, const RegistrationResult& result) {
   const int label_every = std::max(5, shown / 4 / 5 * 5);
   for (int bin = -shown / label_every * label_every; bin <= shown; bin += label_every) {
     cv::line(canvas, {x_of(bin), bottom}, {x_of(bin), bottom + 4}, kAxis);
-    writeCentred(canvas, std::to_string(cvRound(bin * histogram.bin_width_px)), {x_of(bin), bottom + 18}, 0.4);
+    writeCentred(canvas, std::to_string(cvRound(bin * histogram.bin_width_px)), {x_of(bin), bottom + 18},
+                 0.4);
   }
   write(canvas, "votes (fullest bin: " + std::to_string(fullest) + ") by x_map - x_view [px]", {6, 14}, 0.4);
 }
 
 }  // namespace
 
-cv::Mat drawMatches(const cv::Mat& map_image, const cv::Mat& view_image, const FeatureSet& map, const FeatureSet& view,
-                    const RegistrationResult& result) {
+cv::Mat drawMatches(const cv::Mat& map_image, const cv::Mat& view_image, const FeatureSet& map,
+                    const FeatureSet& view, const RegistrationResult& result) {
   const cv::Mat left = inColour(map_image, view_image.size());
   const cv::Mat right = inColour(view_image, map_image.size());
   const int images_height = std::max(left.rows, right.rows);

@@ -40,7 +40,8 @@ ObstacleSettings ObstacleSettings::load(ParameterReader& reader) {
   settings.half_width_m = reader.real("half_width_m", settings.half_width_m, 0.01, 10.0);
   settings.timeout_s = reader.real("timeout_s", settings.timeout_s, 0.05, 60.0);
   if (settings.slow_distance_m < settings.stop_distance_m) {
-    throw ParameterError("parameter obstacles/slow_distance_m must not be less than obstacles/stop_distance_m");
+    throw ParameterError(
+        "parameter obstacles/slow_distance_m must not be less than obstacles/stop_distance_m");
   }
   return settings;
 }

@@ -17,7 +17,8 @@ constexpr double kForwards_s = 5.0;
 
 SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   SupervisorSettings settings;
-  settings.max_blind_distance_m = reader.real("max_blind_distance_m", settings.max_blind_distance_m, 0.0, 1e6);
+  settings.max_blind_distance_m =
+      reader.real("max_blind_distance_m", settings.max_blind_distance_m, 0.0, 1e6);
   settings.hold_timeout_s = reader.real("hold_timeout_s", settings.hold_timeout_s, 0.1, 1e6);
   settings.blind_speed = reader.real("blind_speed", settings.blind_speed, 0.05, 1.0);
   settings.least_speed = reader.real("least_speed", settings.least_speed, 0.05, 1.0);
@@ -104,7 +105,8 @@ void NavigationSupervisor::noteTime(double now_s) {
     return;
   }
   if (now_s > newest_s_ + kForwards_s) {
-    seen_s_ = now_s - settings_.sensor_timeout_s - kBackwards_s;  // what was seen is old, but nothing was silent
+    seen_s_ =
+        now_s - settings_.sensor_timeout_s - kBackwards_s;  // what was seen is old, but nothing was silent
     holding_since_s_.reset();
   }
   newest_s_ = std::max(newest_s_, now_s);
@@ -129,9 +131,9 @@ void NavigationSupervisor::decide(double now_s, const std::string& missing, cons
 bool NavigationSupervisor::mustStop(double now_s, const std::string& missing, const MotionPermit& permit) {
   const double silent_s = now_s - seen_s_;
   if (!image_problem_.empty() || silent_s > settings_.sensor_timeout_s) {
-    const std::string reason = !image_problem_.empty()
-                                   ? image_problem_
-                                   : "no " + (missing.empty() ? "image" : missing) + " for " + humanSeconds(silent_s);
+    const std::string reason = !image_problem_.empty() ? image_problem_
+                                                       : "no " + (missing.empty() ? "image" : missing) +
+                                                             " for " + humanSeconds(silent_s);
     if (silent_s > settings_.give_up_s) {
       fail(reason + "; check its topic");
     } else {
@@ -170,7 +172,8 @@ void NavigationSupervisor::drive(const MotionPermit& permit) {
   if (sight_.recognised) {
     set(NavigationMode::kRepeating, "following the path by sight" + more, factor);
   } else {
-    set(NavigationMode::kDegraded, "the path is not recognised; driving by odometry, " + humanMetres(blind_m_) + " so far" + more,
+    set(NavigationMode::kDegraded,
+        "the path is not recognised; driving by odometry, " + humanMetres(blind_m_) + " so far" + more,
         factor);
   }
 }

@@ -6,7 +6,8 @@
 namespace perennial {
 namespace {
 
-/// Steps shorter in time are judged as if they took this long: two samples stamped almost alike are not a jump.
+/// Steps shorter in time are judged as if they took this long: two samples stamped almost alike are not a
+/// jump.
 constexpr double kShortestStep_s = 0.02;
 
 std::string seconds(double value) { return std::to_string(value) + " s"; }
@@ -21,8 +22,9 @@ OdometerSettings OdometerSettings::load(ParameterReader& reader) {
 }
 
 std::string Odometer::add(const OdometrySample& sample) {
-  const bool finite = std::isfinite(sample.stamp_s) && std::isfinite(sample.x_m) && std::isfinite(sample.y_m) &&
-                      std::isfinite(sample.forward_m_s) && std::isfinite(sample.angular_rad_s);
+  const bool finite = std::isfinite(sample.stamp_s) && std::isfinite(sample.x_m) &&
+                      std::isfinite(sample.y_m) && std::isfinite(sample.forward_m_s) &&
+                      std::isfinite(sample.angular_rad_s);
   if (!finite) {
     return "odometry holds a value that is not finite";
   }
@@ -33,7 +35,8 @@ std::string Odometer::add(const OdometrySample& sample) {
   const TrackPoint& last = track_.back();
   const double elapsed_s = sample.stamp_s - last.sample.stamp_s;
   if (elapsed_s < 0.0) {
-    return "odometry goes back in time, from " + seconds(last.sample.stamp_s) + " to " + seconds(sample.stamp_s);
+    return "odometry goes back in time, from " + seconds(last.sample.stamp_s) + " to " +
+           seconds(sample.stamp_s);
   }
   if (elapsed_s == 0.0) {
     return "";
@@ -50,12 +53,13 @@ std::string Odometer::add(const OdometrySample& sample) {
 }
 
 std::optional<double> Odometer::distanceAt(double stamp_s) const {
-  if (track_.empty() || !(stamp_s >= track_.front().sample.stamp_s && stamp_s <= track_.back().sample.stamp_s)) {
+  if (track_.empty() ||
+      !(stamp_s >= track_.front().sample.stamp_s && stamp_s <= track_.back().sample.stamp_s)) {
     return std::nullopt;
   }
-  const auto after = std::lower_bound(track_.begin(), track_.end(), stamp_s, [](const TrackPoint& point, double stamp) {
-    return point.sample.stamp_s < stamp;
-  });
+  const auto after =
+      std::lower_bound(track_.begin(), track_.end(), stamp_s,
+                       [](const TrackPoint& point, double stamp) { return point.sample.stamp_s < stamp; });
   if (after->sample.stamp_s == stamp_s) {
     return after->distance_m;
   }

@@ -123,7 +123,8 @@ std::vector<double> ParameterReader::reals(const std::string& key, const std::ve
 void ParameterReader::requireAllUsed() const {
   for (const auto& [key, value] : values_) {
     if (known_keys_.count(key) == 0) {
-      throw ParameterError("unknown parameter " + name_space_ + key + "; the known ones are: " + joined(known_keys_));
+      throw ParameterError("unknown parameter " + name_space_ + key +
+                           "; the known ones are: " + joined(known_keys_));
     }
   }
 }

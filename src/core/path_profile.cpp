@@ -35,8 +35,9 @@ void PathProfile::add(double distance_m, const Velocity& velocity) {
   if (!entries_.empty()) {
     ProfileEntry& last = entries_.back();
     if (distance_m < last.distance_m) {
-      throw Error("path profile: entry " + std::to_string(entries_.size()) + " at " + std::to_string(distance_m) +
-                  " m lies before the last one at " + std::to_string(last.distance_m) + " m");
+      throw Error("path profile: entry " + std::to_string(entries_.size()) + " at " +
+                  std::to_string(distance_m) + " m lies before the last one at " +
+                  std::to_string(last.distance_m) + " m");
     }
     if (distance_m == last.distance_m) {
       last.velocity = velocity;
@@ -50,9 +51,9 @@ void PathProfile::add(double distance_m, const Velocity& velocity) {
 }
 
 std::vector<ProfileEntry>::const_iterator PathProfile::entryAt(double distance_m) const {
-  const auto after =
-      std::upper_bound(entries_.begin(), entries_.end(), distance_m,
-                       [](double distance, const ProfileEntry& entry) { return distance < entry.distance_m; });
+  const auto after = std::upper_bound(
+      entries_.begin(), entries_.end(), distance_m,
+      [](double distance, const ProfileEntry& entry) { return distance < entry.distance_m; });
   return after == entries_.begin() ? after : std::prev(after);
 }
 

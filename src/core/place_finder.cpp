@@ -26,10 +26,9 @@ FeatureSet strongest(const FeatureSet& view) {
   std::vector<std::size_t> order(view.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t count = std::min(kStrongest, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                    [&](std::size_t a, std::size_t b) {
-                      return view.keypoints[a].response > view.keypoints[b].response;
-                    });
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+      [&](std::size_t a, std::size_t b) { return view.keypoints[a].response > view.keypoints[b].response; });
   FeatureSet result;
   for (std::size_t i = 0; i < count; ++i) {
     result.add(view.keypoints[order[i]], view.descriptors[order[i]]);
@@ -79,7 +78,8 @@ bool PlaceFinder::endsOfALoop(const ActiveMap& a, const ActiveMap& b) const {
 
 PlaceGuess PlaceFinder::find(const FeatureSet& view) {
   const std::vector<Candidate> candidates = likeliest(view);
-  if (candidates.empty() || !candidates.front().recognised || candidates.front().confidence < kLeastConfidence) {
+  if (candidates.empty() || !candidates.front().recognised ||
+      candidates.front().confidence < kLeastConfidence) {
     return refused("the view was not recognised anywhere on the path");
   }
   Candidate best = candidates.front();
@@ -87,17 +87,19 @@ PlaceGuess PlaceFinder::find(const FeatureSet& view) {
     return std::abs(other.map->distance_m - best.map->distance_m) > kElsewhere_m &&
            !endsOfALoop(*other.map, *best.map);
   });
-  for (const Candidate& other : candidates) {  // of the ends of a loop the beginning, if it is about as likely
+  for (const Candidate& other :
+       candidates) {  // of the ends of a loop the beginning, if it is about as likely
     const bool earlier = other.map->distance_m < best.map->distance_m - kElsewhere_m;
-    if (earlier && endsOfALoop(*other.map, *best.map) && other.inliers >= kAboutAsLikely * candidates.front().inliers) {
+    if (earlier && endsOfALoop(*other.map, *best.map) &&
+        other.inliers >= kAboutAsLikely * candidates.front().inliers) {
       best = other;
     }
   }
   const int rival_inliers = rival == candidates.end() ? 0 : rival->inliers;
   if (rival_inliers > kRivalShare * best.inliers) {
-    return refused("ambiguous: it looks like " + humanMetres(best.map->distance_m) + " (" + std::to_string(best.inliers) +
-                   " features agree), but like " + humanMetres(rival->map->distance_m) + " (" +
-                   std::to_string(rival_inliers) + "), too");
+    return refused("ambiguous: it looks like " + humanMetres(best.map->distance_m) + " (" +
+                   std::to_string(best.inliers) + " features agree), but like " +
+                   humanMetres(rival->map->distance_m) + " (" + std::to_string(rival_inliers) + "), too");
   }
   PlaceGuess guess;
   guess.sure = true;

@@ -99,8 +99,8 @@ void RepeatSession::correctDistance(const NavigationStep& step, double interval_
 }
 
 Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_m) const {
-  // The command holds until the next image: the velocity taught half an image's way ahead is its best mean. Looked up at
-  // the image itself, every curve would be entered that much too late.
+  // The command holds until the next image: the velocity taught half an image's way ahead is its best mean.
+  // Looked up at the image itself, every curve would be entered that much too late.
   const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
   return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
                focal_length_px_, steering_);

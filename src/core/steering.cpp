@@ -28,8 +28,8 @@ Velocity slowed(const Velocity& velocity, double share) {
   return result;
 }
 
-Velocity steer(const Velocity& taught, std::optional<double> displacement_px, std::optional<double> focal_length_px,
-               const SteeringSettings& settings) {
+Velocity steer(const Velocity& taught, std::optional<double> displacement_px,
+               std::optional<double> focal_length_px, const SteeringSettings& settings) {
   double correction = 0.0;
   if (displacement_px) {
     correction = focal_length_px ? settings.gain_per_rad * std::atan(*displacement_px / *focal_length_px)

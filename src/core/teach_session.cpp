@@ -60,7 +60,8 @@ void TeachSession::addMeasuredVelocity(double travelled_m, const Velocity& veloc
   measured_.add(distance(travelled_m), rounded);
 }
 
-bool TeachSession::addImage(double stamp_s, double travelled_m, const cv::Mat& image, const std::string& encoding) {
+bool TeachSession::addImage(double stamp_s, double travelled_m, const cv::Mat& image,
+                            const std::string& encoding) {
   if (!start_m_) {
     begin(stamp_s, travelled_m, image, encoding);
   }
@@ -82,11 +83,13 @@ bool TeachSession::addImage(double stamp_s, double travelled_m, const cv::Mat& i
   newest_features_ = features.size();
   all_features_ += features.size();
   // On a grid, so that the interval is kept on average although images come when they come.
-  next_map_m_ = (std::floor((distance_m + kRounding_m) / settings_.map_interval_m) + 1.0) * settings_.map_interval_m;
+  next_map_m_ =
+      (std::floor((distance_m + kRounding_m) / settings_.map_interval_m) + 1.0) * settings_.map_interval_m;
   return true;
 }
 
-void TeachSession::begin(double stamp_s, double travelled_m, const cv::Mat& image, const std::string& encoding) {
+void TeachSession::begin(double stamp_s, double travelled_m, const cv::Mat& image,
+                         const std::string& encoding) {
   metadata_.image_width = image.cols;
   metadata_.image_height = image.rows;
   metadata_.image_encoding = encoding;
@@ -98,32 +101,35 @@ void TeachSession::begin(double stamp_s, double travelled_m, const cv::Mat& imag
 void TeachSession::requireSameImage(const cv::Mat& image, const std::string& encoding) const {
   if (image.cols != metadata_.image_width || image.rows != metadata_.image_height ||
       encoding != metadata_.image_encoding) {
-    throw ImageError("an image of " + imageKind(image.cols, image.rows, encoding) + ", but map '" + metadata_.name +
-                     "' is being taught with " +
+    throw ImageError("an image of " + imageKind(image.cols, image.rows, encoding) + ", but map '" +
+                     metadata_.name + "' is being taught with " +
                      imageKind(metadata_.image_width, metadata_.image_height, metadata_.image_encoding) +
                      "; keep the camera's settings while teaching");
   }
 }
 
 const PathProfile& TeachSession::chosenProfile() const {
-  const bool commands = settings_.velocity_source == "commands" ||
-                        (settings_.velocity_source == "auto" && travels(commanded_));
+  const bool commands =
+      settings_.velocity_source == "commands" || (settings_.velocity_source == "auto" && travels(commanded_));
   return commands ? commanded_ : measured_;
 }
 
 TeachSummary TeachSession::finish(double travelled_m) {
   const double length_m = distance(travelled_m);
   if (local_maps_ == 0) {
-    throw MapError("map '" + metadata_.name + "' has no local map: no image came together with odometry; "
+    throw MapError("map '" + metadata_.name +
+                   "' has no local map: no image came together with odometry; "
                    "check the image and odometry topics");
   }
   if (length_m <= 0.0) {
-    throw MapError("map '" + metadata_.name + "' has length 0: the odometry did not move while teaching; "
+    throw MapError("map '" + metadata_.name +
+                   "' has length 0: the odometry did not move while teaching; "
                    "check the odometry topic");
   }
   const PathProfile& profile = chosenProfile();
   if (!travels(profile)) {
-    throw MapError("map '" + metadata_.name + "' has no velocities: neither commands nor odometry told how fast to "
+    throw MapError("map '" + metadata_.name +
+                   "' has no velocities: neither commands nor odometry told how fast to "
                    "drive; check the command topic and the parameter velocity_source");
   }
   writer_->finish(profile, length_m);

@@ -2,4 +2,6 @@
 
 #include "ros/node_main.h"
 
-int main(int argc, char** argv) { return perennial::runNode<perennial::MapManagerNode>(argc, argv, "map_manager"); }
+int main(int argc, char** argv) {
+  return perennial::runNode<perennial::MapManagerNode>(argc, argv, "map_manager");
+}

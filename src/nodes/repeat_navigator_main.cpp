@@ -2,4 +2,6 @@
 
 #include "ros/node_main.h"
 
-int main(int argc, char** argv) { return perennial::runNode<perennial::RepeatNavigator>(argc, argv, "repeat_navigator"); }
+int main(int argc, char** argv) {
+  return perennial::runNode<perennial::RepeatNavigator>(argc, argv, "repeat_navigator");
+}

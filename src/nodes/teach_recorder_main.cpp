@@ -2,4 +2,6 @@
 
 #include "ros/node_main.h"
 
-int main(int argc, char** argv) { return perennial::runNode<perennial::TeachRecorder>(argc, argv, "teach_recorder"); }
+int main(int argc, char** argv) {
+  return perennial::runNode<perennial::TeachRecorder>(argc, argv, "teach_recorder");
+}

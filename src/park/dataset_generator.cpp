@@ -112,10 +112,12 @@ class Generator {
       const View view = viewOf(traversal, place);
       cv::Mat image;
       for (int i = 0; i < kMostExposures && (i == 0 || !camera.state().settled); ++i) {
-        const cv::Mat& rendered = renderer_->render(plan_[traversal].conditions, view.pose, camera.exposure());
+        const cv::Mat& rendered =
+            renderer_->render(plan_[traversal].conditions, view.pose, camera.exposure());
         image = camera.develop(rendered, 0.0, shots++, false);
       }
-      const cv::Rect cut(settings_.max_offset_px + view.offset_px, 0, settings_.camera.geometry.width, image.rows);
+      const cv::Rect cut(settings_.max_offset_px + view.offset_px, 0, settings_.camera.geometry.width,
+                         image.rows);
       writeImage(folder_ + "/" + imageOf(traversal, place), image(cut));
     }
   }
@@ -125,8 +127,8 @@ class Generator {
     text << "traversal,stamp,distance_m,image,offset_px\n";
     for (std::size_t t = 0; t < traversals; ++t) {
       for (int place = 0; place < settings_.places; ++place) {
-        text << plan_[t].name << "," << formatUtc(plan_[t].conditions.date_time_s) << "," << distanceOf(place) << ","
-             << imageOf(t, place) << "," << -viewOf(t, place).offset_px << "\n";
+        text << plan_[t].name << "," << formatUtc(plan_[t].conditions.date_time_s) << "," << distanceOf(place)
+             << "," << imageOf(t, place) << "," << -viewOf(t, place).offset_px << "\n";
       }
     }
     return text.str();
@@ -135,10 +137,11 @@ class Generator {
   /// Everything that the images depend on.
   std::string description() const {
     std::ostringstream text;
-    text << "places " << settings_.places << "\ntraversals " << settings_.traversals << "\ndays " << settings_.days
-         << "\nseed " << settings_.seed << "\nstart " << formatUtc(settings_.start_s) << "\nmax_offset_px "
-         << settings_.max_offset_px << "\nposition_error_m " << settings_.position_error_m << "\nimage "
-         << settings_.camera.geometry.width << "x" << settings_.camera.geometry.height << "\n";
+    text << "places " << settings_.places << "\ntraversals " << settings_.traversals << "\ndays "
+         << settings_.days << "\nseed " << settings_.seed << "\nstart " << formatUtc(settings_.start_s)
+         << "\nmax_offset_px " << settings_.max_offset_px << "\nposition_error_m "
+         << settings_.position_error_m << "\nimage " << settings_.camera.geometry.width << "x"
+         << settings_.camera.geometry.height << "\n";
     return text.str();
   }
 
@@ -150,7 +153,8 @@ class Generator {
       std::ostringstream known;
       known << stream.rdbuf();
       if (known.str() != description()) {
-        throw Error(folder_ + " holds a data set of other settings (see settings.txt in it); choose another folder");
+        throw Error(folder_ +
+                    " holds a data set of other settings (see settings.txt in it); choose another folder");
       }
       return;
     }

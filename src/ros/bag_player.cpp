@@ -20,7 +20,8 @@ namespace {
 using TeachClient = actionlib::SimpleActionClient<perennial_nav::TeachAction>;
 using RepeatClient = actionlib::SimpleActionClient<perennial_nav::RepeatAction>;
 
-/// So many images may be on their way: enough to keep the nodes busy, and for odometry that comes after its image.
+/// So many images may be on their way: enough to keep the nodes busy, and for odometry that comes after its
+/// image.
 constexpr std::size_t kUnanswered = 4;
 const ros::WallDuration kClockInterval(0.1);
 
@@ -50,8 +51,9 @@ BagPlayer::BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh)
   try {
     bag_.open(settings_.bag, rosbag::bagmode::Read);
   } catch (const rosbag::BagException& error) {
-    throw Error("bag " + settings_.bag + " cannot be read: " + error.what() +
-                (settings_.bag.front() == '/' ? "" : " (nodes run in another folder: give an absolute path)"));
+    throw Error(
+        "bag " + settings_.bag + " cannot be read: " + error.what() +
+        (settings_.bag.front() == '/' ? "" : " (nodes run in another folder: give an absolute path)"));
   }
   requireTopics();
   clock_publisher_ = nh_.advertise<rosgraph_msgs::Clock>("/clock", 100);
@@ -78,7 +80,8 @@ void BagPlayer::requireTopics() const {
 void BagPlayer::advertise() {
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag_).getConnections()) {
     const std::string& topic = connection->topic;
-    const bool replaced = topic == "/clock" || (settings_.mode == "repeat" && topic == settings_.command_topic);
+    const bool replaced =
+        topic == "/clock" || (settings_.mode == "repeat" && topic == settings_.command_topic);
     if (replaced || publishers_.count(topic) > 0) {
       continue;
     }
@@ -148,7 +151,8 @@ void BagPlayer::awaitStart(const std::function<bool()>& started) {
 
 void BagPlayer::play(const std::function<bool()>& stop) {
   for (const std::string& topic : {settings_.image_topic, settings_.odom_topic}) {
-    if (!waitUntil([&] { return stop() || publishers_.at(topic).getNumSubscribers() > 0; }, settings_.patience_s)) {
+    if (!waitUntil([&] { return stop() || publishers_.at(topic).getNumSubscribers() > 0; },
+                   settings_.patience_s)) {
       throw Error("nobody subscribes to " + topic + "; do the launch file's topics agree with the bag's?");
     }
   }
@@ -162,8 +166,9 @@ void BagPlayer::play(const std::function<bool()>& stop) {
     if (message.getTopic() == settings_.image_topic) {
       const sensor_msgs::ImageConstPtr image = message.instantiate<sensor_msgs::Image>();
       if (!image) {
-        throw Error(settings_.image_topic + " of the bag holds " + message.getDataType() +
-                    ", not sensor_msgs/Image; compressed images must be unpacked (image_transport republish) first");
+        throw Error(
+            settings_.image_topic + " of the bag holds " + message.getDataType() +
+            ", not sensor_msgs/Image; compressed images must be unpacked (image_transport republish) first");
       }
       unanswered_.insert(image->header.stamp);
       ++images_;

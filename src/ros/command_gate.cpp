@@ -46,7 +46,9 @@ void CommandGate::begin() {
   interlock_.forgetCommands();
 }
 
-bool CommandGate::fresh(const ros::Time& now) const { return now - stamp_ <= timeout_ && stamp_ - now <= timeout_; }
+bool CommandGate::fresh(const ros::Time& now) const {
+  return now - stamp_ <= timeout_ && stamp_ - now <= timeout_;
+}
 
 bool CommandGate::drive(const Velocity& velocity, const ros::Time& stamp) {
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -38,7 +38,8 @@ perennial_nav::Features toMessage(const FeatureSet& features) {
   }
   message.descriptors.resize(features.size() * Descriptor::kBytes);
   for (std::size_t i = 0; i < features.size(); ++i) {
-    std::memcpy(&message.descriptors[i * Descriptor::kBytes], features.descriptors[i].words.data(), Descriptor::kBytes);
+    std::memcpy(&message.descriptors[i * Descriptor::kBytes], features.descriptors[i].words.data(),
+                Descriptor::kBytes);
   }
   return message;
 }
@@ -69,7 +70,8 @@ perennial_nav::LocalMap toMessage(const ActiveMap& map) {
       all.add(alternative.features.keypoints[i], alternative.features.descriptors[i]);
     }
     message.alternative_sizes.push_back(static_cast<std::uint32_t>(alternative.features.size()));
-    message.positions.insert(message.positions.end(), alternative.positions.begin(), alternative.positions.end());
+    message.positions.insert(message.positions.end(), alternative.positions.begin(),
+                             alternative.positions.end());
   }
   message.features = toMessage(all);
   return message;
@@ -125,7 +127,8 @@ perennial_nav::Registration toMessage(const NavigationStep& step) {
 
 Observation observationFromMessage(const perennial_nav::Registration& message) {
   const std::size_t n = message.positions.size();
-  require(message.states.size() == n && message.partners.size() == n, "the arrays of a registration differ in length");
+  require(message.states.size() == n && message.partners.size() == n,
+          "the arrays of a registration differ in length");
   require(std::isfinite(message.displacement_px) && std::isfinite(message.distance_m) &&
               std::isfinite(message.confidence) && std::isfinite(message.uncertainty_px),
           "a registration holds a value that is not finite");
@@ -146,7 +149,8 @@ Observation observationFromMessage(const perennial_nav::Registration& message) {
   result.histogram.counts.assign(message.histogram.begin(), message.histogram.end());
   result.partners = message.partners;
   for (std::size_t i = 0; i < n; ++i) {
-    require(message.states[i] <= perennial_nav::Registration::MATCHED_INCORRECTLY, "a feature's state is unknown");
+    require(message.states[i] <= perennial_nav::Registration::MATCHED_INCORRECTLY,
+            "a feature's state is unknown");
     require(message.partners[i] < static_cast<std::int32_t>(observation.view.size()),
             "a feature's partner is not in the view");
     result.states.push_back(static_cast<FeatureState>(message.states[i]));
@@ -176,7 +180,8 @@ PathProfile fromMessage(const perennial_nav::PathProfile& message) {
   return PathProfile::fromEntries(std::move(entries));
 }
 
-MapMetadata metadataFromMessage(const perennial_nav::BeginTraversalResponse& message, const std::string& name) {
+MapMetadata metadataFromMessage(const perennial_nav::BeginTraversalResponse& message,
+                                const std::string& name) {
   MapMetadata metadata;
   metadata.name = name;
   metadata.camera = message.camera;
@@ -217,8 +222,8 @@ cv::Mat greyImage(const sensor_msgs::ImageConstPtr& message) {
   try {
     return cv_bridge::toCvShare(message, sensor_msgs::image_encodings::MONO8)->image;
   } catch (const std::exception& error) {
-    throw ImageError("an image of " + std::to_string(message->width) + "x" + std::to_string(message->height) + " " +
-                     message->encoding + " cannot be read as a grey image: " + error.what());
+    throw ImageError("an image of " + std::to_string(message->width) + "x" + std::to_string(message->height) +
+                     " " + message->encoding + " cannot be read as a grey image: " + error.what());
   }
 }
 

@@ -42,11 +42,13 @@ MapManagerNode::MapManagerNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   reader.requireAllUsed();
 
   map_publisher_ = nh_.advertise<perennial_nav::LocalMap>(
-      "local_maps", 1000, [this](const ros::SingleSubscriberPublisher& subscriber) { onSubscriber(subscriber); });
+      "local_maps", 1000,
+      [this](const ros::SingleSubscriberPublisher& subscriber) { onSubscriber(subscriber); });
   registration_subscriber_ = nh_.subscribe("registration", 1000, &MapManagerNode::onRegistration, this);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("map", [this](auto& status) { diagnose(status); });
-  diagnostics_timer_ = nh_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) { diagnostics_.update(); });
+  diagnostics_timer_ =
+      nh_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) { diagnostics_.update(); });
 
   ros::NodeHandle service_nh(nh_);
   service_nh.setCallbackQueue(&service_queue_);
@@ -74,8 +76,8 @@ bool MapManagerNode::onBegin(perennial_nav::BeginTraversalRequest& request,
 
 void MapManagerNode::open(const perennial_nav::BeginTraversalRequest& request,
                           perennial_nav::BeginTraversalResponse& response) {
-  manager_ = std::make_unique<MapManager>(MapFile(existingMapFile(settings_.map_folder, request.map_name)), strategy_,
-                                          manager_settings_);
+  manager_ = std::make_unique<MapManager>(MapFile(existingMapFile(settings_.map_folder, request.map_name)),
+                                          strategy_, manager_settings_);
   manager_->beginTraversal(request.stamp.toSec());
   ++traversal_;
   registrations_ = 0;
@@ -152,14 +154,15 @@ void MapManagerNode::learn(const perennial_nav::Registration& message) {
   manager_->observe(message.local_map, message.local_map_distance_m, observationFromMessage(message));
 }
 
-bool MapManagerNode::onEnd(perennial_nav::EndTraversalRequest& request, perennial_nav::EndTraversalResponse& response) {
+bool MapManagerNode::onEnd(perennial_nav::EndTraversalRequest& request,
+                           perennial_nav::EndTraversalResponse& response) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (!manager_ || !manager_->inTraversal() || request.traversal != traversal_) {
     response.message = "traversal " + std::to_string(request.traversal) + " is not open";
     return true;
   }
-  const bool complete = registration_came_.wait_for(
-      lock, kRegistrationWait, [&] { return registrations_ >= request.registrations; });
+  const bool complete = registration_came_.wait_for(lock, kRegistrationWait,
+                                                    [&] { return registrations_ >= request.registrations; });
   if (!complete && problem_.empty()) {
     problem_ = "only " + std::to_string(registrations_) + " of " + std::to_string(request.registrations) +
                " registrations arrived";

@@ -43,7 +43,8 @@ void MasterMonitor::watch() {
   while (!end_) {
     lock.unlock();
     const bool known = knowsThisNode();
-    // Not known, and yet the master answers: asked in this order, a master that dies in between is not mistaken for a new one.
+    // Not known, and yet the master answers: asked in this order, a master that dies in between is not
+    // mistaken for a new one.
     const bool answers = known || ros::master::check();
     lock.lock();
     if (answers) {

@@ -27,7 +27,8 @@ NavigationReporter::NavigationReporter(ros::NodeHandle nh, ros::NodeHandle priva
 }
 
 void NavigationReporter::state(const ros::Time& stamp, const NavigationStatus& status,
-                               const geometry_msgs::Twist& command, const RepeatRun* run, const NavigationStep* step) {
+                               const geometry_msgs::Twist& command, const RepeatRun* run,
+                               const NavigationStep* step) {
   const std::string mode = nameOf(status.mode);
   if (mode != state_.state) {
     ROS_INFO("%s: %s", mode.c_str(), status.reason.c_str());
@@ -71,13 +72,14 @@ void NavigationReporter::matches(const NavigationStep& step, const sensor_msgs::
   const cv::Mat map_image = cv::imdecode(message.image.data, cv::IMREAD_GRAYSCALE);
   const ActiveMap map = fromMessage(message);
   const cv::Mat picture =
-      drawMatches(map_image, greyImage(image), map.alternatives[step.registration.alternative].features, step.view,
-                  step.registration.result);
+      drawMatches(map_image, greyImage(image), map.alternatives[step.registration.alternative].features,
+                  step.view, step.registration.result);
   matches_publisher_.publish(
       cv_bridge::CvImage(image->header, sensor_msgs::image_encodings::BGR8, picture).toImageMsg());
 }
 
-void NavigationReporter::processed(const std_msgs::Header& header, bool drives, const geometry_msgs::Twist& command) {
+void NavigationReporter::processed(const std_msgs::Header& header, bool drives,
+                                   const geometry_msgs::Twist& command) {
   perennial_nav::Processed processed;
   processed.header = header;
   processed.node = kNode;

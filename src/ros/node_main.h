@@ -15,7 +15,8 @@ namespace perennial {
 
 inline volatile std::sig_atomic_t g_stop_requested = 0;
 
-/// Connects to ROS and waits for the master, which roscpp would do deaf to Ctrl-C. False when it was stopped meanwhile.
+/// Connects to ROS and waits for the master, which roscpp would do deaf to Ctrl-C. False when it was stopped
+/// meanwhile.
 inline bool connectToMaster(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
   std::signal(SIGINT, [](int) { g_stop_requested = 1; });
@@ -32,7 +33,8 @@ inline bool connectToMaster(int argc, char** argv, const std::string& name) {
   return true;
 }
 
-/// Runs `body(nh)`, which returns an exit status and ends when g_stop_requested is set, as a node. Exit status 1 when it throws.
+/// Runs `body(nh)`, which returns an exit status and ends when g_stop_requested is set, as a node. Exit
+/// status 1 when it throws.
 template <typename Body>
 int runBody(int argc, char** argv, const std::string& name, const Body& body) {
   try {
@@ -52,9 +54,10 @@ int runBody(int argc, char** argv, const std::string& name, const Body& body) {
   }
 }
 
-/// Runs a node until Ctrl-C, SIGTERM or a shutdown by the master, and destroys it while its connections still live, so
-/// that what it does last (stop the robot, finish the map) reaches the others. Exit status 1 when it cannot start, or when the
-/// master was restarted: nobody can find the node any more, and whoever started it (respawn) has to start it anew.
+/// Runs a node until Ctrl-C, SIGTERM or a shutdown by the master, and destroys it while its connections still
+/// live, so that what it does last (stop the robot, finish the map) reaches the others. Exit status 1 when it
+/// cannot start, or when the master was restarted: nobody can find the node any more, and whoever started it
+/// (respawn) has to start it anew.
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name) {
   return runBody(argc, argv, name, [&name](const ros::NodeHandle& nh) {

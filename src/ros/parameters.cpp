@@ -64,7 +64,8 @@ std::string shortest(double value) {
 
 /// Keys that libraries, not this package, read from a node's private namespace.
 const std::vector<std::string>& libraryKeys() {
-  static const std::vector<std::string> keys{"image_transport", "diagnostic_period", "use_fqn", "tcp_nodelay"};
+  static const std::vector<std::string> keys{"image_transport", "diagnostic_period", "use_fqn",
+                                             "tcp_nodelay"};
   return keys;
 }
 

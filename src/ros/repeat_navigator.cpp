@@ -55,7 +55,8 @@ RepeatNavigator::~RepeatNavigator() {
   }
 }
 
-// --- goals -----------------------------------------------------------------------------------------------------------
+// --- goals
+// -----------------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::onGoal() {
   if (run_) {
@@ -88,16 +89,17 @@ void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
   ROS_INFO("repeating map '%s'", goal.map_name.c_str());
 }
 
-void RepeatNavigator::beginTraversal(double start_m, std::optional<double> travelled_m, const ros::Time& stamp) {
+void RepeatNavigator::beginTraversal(double start_m, std::optional<double> travelled_m,
+                                     const ros::Time& stamp) {
   const auto response = traversals_.begin(run_->goal.map_name, start_m, stamp);
   if (!run_->session) {
     if (!(start_m >= 0.0 && start_m < response.length_m)) {
       throw MapError("start distance " + std::to_string(start_m) + " m does not lie on the path, which is " +
                      std::to_string(response.length_m) + " m long");
     }
-    run_->session = std::make_unique<RepeatSession>(metadataFromMessage(response, run_->goal.map_name),
-                                                    fromMessage(response.profile), response.local_maps,
-                                                    settings_.repeat);
+    run_->session =
+        std::make_unique<RepeatSession>(metadataFromMessage(response, run_->goal.map_name),
+                                        fromMessage(response.profile), response.local_maps, settings_.repeat);
   }
   run_->start_m = start_m;
   run_->messages.clear();
@@ -127,7 +129,8 @@ perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::str
   result.reason = reason;
   if (run && run->session) {
     result.traversals = success ? run->goal.traversals : run->number - 1;
-    result.distance_m = success ? run->driven_m : run->driven_m + std::max(0.0, run->distance() - run->start_m);
+    result.distance_m =
+        success ? run->driven_m : run->driven_m + std::max(0.0, run->distance() - run->start_m);
   }
   try {
     traversals_.end(false, ros::Time::now());
@@ -140,7 +143,8 @@ perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::str
   return result;
 }
 
-// --- sensors ---------------------------------------------------------------------------------------------------------
+// --- sensors
+// ---------------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
   if (run_ && isFromBefore(image->header)) {
@@ -224,7 +228,8 @@ void RepeatNavigator::onTimer() {
   }
 }
 
-// --- images ----------------------------------------------------------------------------------------------------------
+// --- images
+// ----------------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::processPending() {
   while (run_ && !images_.empty()) {
@@ -234,7 +239,8 @@ void RepeatNavigator::processPending() {
     if (!newest || newest->stamp_s < stamp_s) {
       return;  // its odometry is still to come
     }
-    if (!settings_.every_image && images_.size() > 1 && images_.second()->header.stamp.toSec() <= newest->stamp_s) {
+    if (!settings_.every_image && images_.size() > 1 &&
+        images_.second()->header.stamp.toSec() <= newest->stamp_s) {
       images_.drop();
       acknowledge(image);
       continue;
@@ -289,8 +295,8 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
   }
 }
 
-/// The odometer counts driving backwards like forwards, as paths are taught; but what a person backs, the repeat has to drive
-/// again.
+/// The odometer counts driving backwards like forwards, as paths are taught; but what a person backs, the
+/// repeat has to drive again.
 void RepeatNavigator::followHand(double travelled_m) {
   const bool backwards = odometer_.newest() && odometer_.newest()->forward_m_s < 0.0;
   if (backwards && gate_.permit().kind == MotionPermit::Kind::kManual) {
@@ -348,15 +354,16 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
   run.driven_m += run.session->length() - run.start_m;
   try {
     const std::uint32_t updated = traversals_.end(true, stamp);
-    ROS_INFO("traversal %u of '%s' done, %u local maps learned something", run.number, run.goal.map_name.c_str(),
-             updated);
+    ROS_INFO("traversal %u of '%s' done, %u local maps learned something", run.number,
+             run.goal.map_name.c_str(), updated);
   } catch (const Error& error) {
     ROS_ERROR("%s", error.what());  // the map stays as it was; the robot can go on
   }
   if (run.number == run.goal.traversals) {
     const std::string reason = "repeated '" + run.goal.map_name + "' " +
-                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") + "; recognised " +
-                               std::to_string(run.recognised) + " of " + std::to_string(run.images) + " images";
+                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") +
+                               "; recognised " + std::to_string(run.recognised) + " of " +
+                               std::to_string(run.images) + " images";
     supervisor_.finish(reason);
     publishState(stamp);
     server_.setSucceeded(endRun(true, reason), reason);
@@ -366,7 +373,8 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
   beginTraversal(std::min(overshoot_m, run.session->length()), run.travelled_m, stamp);
 }
 
-// --- what others see -------------------------------------------------------------------------------------------------
+// --- what others see
+// -------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::publishState(const ros::Time& stamp, const NavigationStep* step) {
   reporter_.state(stamp, supervisor_.status(), gate_.newest(), run_.get(), step);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
 
-/// As REP 117 has it: -inf is too near to measure, +inf or beyond the range is nothing, NaN is a reading that failed.
+/// As REP 117 has it: -inf is too near to measure, +inf or beyond the range is nothing, NaN is a reading that
+/// failed.
 double distanceOf(const sensor_msgs::Range& range) {
   const double distance_m = range.range;
   if (std::isnan(distance_m)) {
@@ -21,15 +22,16 @@ double distanceOf(const sensor_msgs::Range& range) {
 
 }  // namespace
 
-SafetyInputs::SafetyInputs(CommandGate& gate, const InterlockSettings& settings) : gate_(gate), settings_(settings) {
+SafetyInputs::SafetyInputs(CommandGate& gate, const InterlockSettings& settings)
+    : gate_(gate), settings_(settings) {
   ros::NodeHandle nh = gate_.nodeHandle();
-  subscribers_.push_back(nh.subscribe<std_msgs::Bool>("e_stop", 10, [this](const std_msgs::BoolConstPtr& message) {
-    gate_.setEmergencyStop(EmergencyStop::kTopic, message->data != 0);
-  }));
   subscribers_.push_back(
-      nh.subscribe<geometry_msgs::Twist>("teleop_vel", 10, [this](const geometry_msgs::TwistConstPtr& message) {
-        gate_.teleop(fromMessage(*message));
+      nh.subscribe<std_msgs::Bool>("e_stop", 10, [this](const std_msgs::BoolConstPtr& message) {
+        gate_.setEmergencyStop(EmergencyStop::kTopic, message->data != 0);
       }));
+  subscribers_.push_back(nh.subscribe<geometry_msgs::Twist>(
+      "teleop_vel", 10,
+      [this](const geometry_msgs::TwistConstPtr& message) { gate_.teleop(fromMessage(*message)); }));
   stop_server_ = nh.advertiseService("e_stop", &SafetyInputs::onStopService, this);
   resume_server_ = nh.advertiseService("resume", &SafetyInputs::onResume, this);
   subscribeDeadMan(nh);
@@ -40,8 +42,8 @@ void SafetyInputs::subscribeDeadMan(ros::NodeHandle nh) {
   if (settings_.dead_man.kind == DeadManSettings::Kind::kJoy) {
     subscribers_.push_back(nh.subscribe("joy", 10, &SafetyInputs::onJoy, this));
   } else if (settings_.dead_man.kind == DeadManSettings::Kind::kHeartbeat) {
-    subscribers_.push_back(
-        nh.subscribe<std_msgs::Empty>("heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true); }));
+    subscribers_.push_back(nh.subscribe<std_msgs::Empty>(
+        "heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true); }));
   }
 }
 
@@ -53,9 +55,10 @@ void SafetyInputs::subscribeObstacles(ros::NodeHandle nh) {
     subscribers_.push_back(nh.subscribe("obstacle_scan", 10, &SafetyInputs::onScan, this));
   }
   if (settings_.obstacles.flag) {
-    subscribers_.push_back(nh.subscribe<std_msgs::Bool>("obstacle", 10, [this](const std_msgs::BoolConstPtr& message) {
-      gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m);
-    }));
+    subscribers_.push_back(
+        nh.subscribe<std_msgs::Bool>("obstacle", 10, [this](const std_msgs::BoolConstPtr& message) {
+          gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m);
+        }));
   }
 }
 
@@ -83,9 +86,10 @@ void SafetyInputs::onRange(const sensor_msgs::Range& range) {
 }
 
 void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
-  gate_.obstacle(ObstacleSensor::kScan,
-                 nearestInCorridor(scan.ranges.data(), scan.ranges.size(), scan.angle_min, scan.angle_increment,
-                                   scan.range_min, scan.range_max, settings_.obstacles.half_width_m));
+  gate_.obstacle(
+      ObstacleSensor::kScan,
+      nearestInCorridor(scan.ranges.data(), scan.ranges.size(), scan.angle_min, scan.angle_increment,
+                        scan.range_min, scan.range_max, settings_.obstacles.half_width_m));
 }
 
 }  // namespace perennial

@@ -48,7 +48,8 @@ TeachRecorder::TeachRecorder(ros::NodeHandle nh, ros::NodeHandle private_nh)
   reconfigure_.setCallback([this](auto& config, uint32_t level) { onReconfigure(config, level); });
   diagnostics_.setHardwareID("none");
   diagnostics_.add("teaching", [this](auto& status) { diagnose(status); });
-  diagnostics_timer_ = nh_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) { diagnostics_.update(); });
+  diagnostics_timer_ =
+      nh_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) { diagnostics_.update(); });
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
 

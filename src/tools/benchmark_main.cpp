@@ -1,5 +1,6 @@
-// rosrun perennial_nav benchmark: times of every stage and of the whole frame, beside other libraries' in the same run.
-// Names read stage/size/features/path, for instance whole_frame/752x480/500/avx2. All options of Google Benchmark apply
+// rosrun perennial_nav benchmark: times of every stage and of the whole frame, beside other libraries' in the
+// same run. Names read stage/size/features/path, for instance whole_frame/752x480/500/avx2. All options of
+// Google Benchmark apply
 // (--benchmark_filter, --benchmark_format=json, ...).
 #include <benchmark/benchmark.h>
 
@@ -103,7 +104,9 @@ void describe(benchmark::State& state, const Case& c) {
 class Against {
  public:
   Against(const Case& c, RegistrationMethod method, bool spread)
-      : image_(scene(c.size)), extractor_(extraction(c.features, spread)), registration_(makeRegistration({method})) {
+      : image_(scene(c.size)),
+        extractor_(extraction(c.features, spread)),
+        registration_(makeRegistration({method})) {
     const cv::Mat shifted = (cv::Mat_<double>(2, 3) << 1, 0, -30, 0, 1, 0);
     cv::Mat moved;
     cv::warpAffine(image_, moved, shifted, c.size, cv::INTER_NEAREST, cv::BORDER_REFLECT);
@@ -186,8 +189,9 @@ void dlibSurf(benchmark::State& state, const Case& c) {
 
 template <class Function>
 void add(const std::string& stage, const Case& c, Function function) {
-  const std::string name = stage + "/" + std::to_string(c.size.width) + "x" + std::to_string(c.size.height) + "/" +
-                           std::to_string(c.features) + "/" + (c.path != nullptr ? c.path->name : "library");
+  const std::string name = stage + "/" + std::to_string(c.size.width) + "x" + std::to_string(c.size.height) +
+                           "/" + std::to_string(c.features) + "/" +
+                           (c.path != nullptr ? c.path->name : "library");
   benchmark::RegisterBenchmark(name.c_str(), [c, function](benchmark::State& state) {
     useKernels(c.path != nullptr ? *c.path : *availableKernels().back());
     function(state, c);
@@ -200,7 +204,9 @@ void addPath(const Case& c) {
   add("hessian", c, hessian);
   add("detect", c, detect);
   add("describe", c, describe);
-  const auto method = [](Method m) { return [m](benchmark::State& s, const Case& k) { matchAndVote(s, k, m); }; };
+  const auto method = [](Method m) {
+    return [m](benchmark::State& s, const Case& k) { matchAndVote(s, k, m); };
+  };
   add("register_histogram", c, method(Method::kHistogram));
   add("register_robust", c, method(Method::kRobust));
   const auto frame = [](Method m, bool spread) {
@@ -211,7 +217,8 @@ void addPath(const Case& c) {
 }
 
 void addAll() {
-  for (const cv::Size& size : {cv::Size(376, 240), cv::Size(752, 480), cv::Size(1024, 384), cv::Size(1920, 1080)}) {
+  for (const cv::Size& size :
+       {cv::Size(376, 240), cv::Size(752, 480), cv::Size(1024, 384), cv::Size(1920, 1080)}) {
     for (const int features : {250, 500, 1000, 2000}) {
       const Case library{size, features, nullptr};
       add("opencv_orb", library, opencvOrb);
@@ -239,15 +246,19 @@ class Reporter : public benchmark::ConsoleReporter {
     }
   }
 
-  /// How many times as long as ours the others took, and our own scalar path, of the same size and features; by the time of
-  /// the processor, which does not count what other programs take.
+  /// How many times as long as ours the others took, and our own scalar path, of the same size and features;
+  /// by the time of the processor, which does not count what other programs take.
   void printRatios() const {
     for (const auto& [name, ms] : times_) {
       const std::size_t slash = name.find('/');
       const std::string stage = name.substr(0, slash);
       const std::string circumstances = name.substr(slash, name.rfind('/') - slash);
       ratio(name, ms, stage + circumstances + "/scalar");
-      ratio(name, ms, (stage == "detect" ? "dlib_surf_detect" : stage.rfind("whole", 0) == 0 ? "opencv_orb" : "none") + circumstances + "/library");
+      ratio(name, ms,
+            (stage == "detect"              ? "dlib_surf_detect"
+             : stage.rfind("whole", 0) == 0 ? "opencv_orb"
+                                            : "none") +
+                circumstances + "/library");
       if (stage.rfind("register", 0) == 0) {
         ratio(name, ms, "opencv_bfmatcher" + circumstances + "/library");
       }

@@ -1,5 +1,5 @@
-// rosrun perennial_nav dataset_to_bag DATASET TRAVERSAL OUT.bag: one traversal of a data set as a bag of images and
-// odometry, to be taught from or registered by the nodes.
+// rosrun perennial_nav dataset_to_bag DATASET TRAVERSAL OUT.bag: one traversal of a data set as a bag of
+// images and odometry, to be taught from or registered by the nodes.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -128,9 +128,10 @@ nav_msgs::Odometry odometryMessage(const perennial::OdometrySample& sample) {
 void requireSize(const cv::Mat& image, cv::Size size, const perennial::Dataset& dataset,
                  const perennial::DatasetRow& row) {
   if (image.size() != size) {
-    throw perennial::DatasetError(dataset.manifest + ":" + std::to_string(row.line) + ": " + row.image +
-                                  " differs in size from the images before it; choose the places of one camera with "
-                                  "--from and --to");
+    throw perennial::DatasetError(
+        dataset.manifest + ":" + std::to_string(row.line) + ": " + row.image +
+        " differs in size from the images before it; choose the places of one camera with "
+        "--from and --to");
   }
 }
 
@@ -141,8 +142,8 @@ void addGroundTruth(const std::string& file, const std::vector<perennial::Datase
   std::ofstream stream(file, std::ios::app);
   stream << std::setprecision(17) << (begin ? "traversal,stamp,distance_m,offset_px\n" : "");
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    stream << perennial::csvField(rows[i].traversal) << "," << perennial::formatUtc(track.image_stamps_s[i]) << ","
-           << rows[i].distance_m << "," << rows[i].offset_px << "\n";
+    stream << perennial::csvField(rows[i].traversal) << "," << perennial::formatUtc(track.image_stamps_s[i])
+           << "," << rows[i].distance_m << "," << rows[i].offset_px << "\n";
   }
   stream.close();
   if (!stream) {

@@ -29,7 +29,8 @@ TEST(Disturbance, coversTheShareItSays) {
 
 TEST(Disturbance, saturatesOneSide) {
   const cv::Mat white = disturbed(texture(400, 300, 6), "saturate=0.5") == 255;
-  EXPECT_EQ(cv::countNonZero(white.colRange(0, 200)) == 60000, cv::countNonZero(white.colRange(200, 400)) < 60000);
+  EXPECT_EQ(cv::countNonZero(white.colRange(0, 200)) == 60000,
+            cv::countNonZero(white.colRange(200, 400)) < 60000);
 }
 
 TEST(Disturbance, movesTheSceneAsTheCameraTilts) {

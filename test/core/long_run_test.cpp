@@ -1,5 +1,6 @@
-// A robot that repeats a path for years, in one process and in simulated time: memory, time per traversal and numbers must not
-// drift. PERENNIAL_TRAVERSALS says how many traversals; the figures of 10000 stand in docs/reliability.md.
+// A robot that repeats a path for years, in one process and in simulated time: memory, time per traversal and
+// numbers must not drift. PERENNIAL_TRAVERSALS says how many traversals; the figures of 10000 stand in
+// docs/reliability.md.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -67,7 +68,8 @@ class LongRun : public ::testing::Test {
 
   std::string file() const { return folder_ / "loop.perennial"; }
 
-  /// One traversal through everything that a robot runs; the odometer and the session go on from the one before.
+  /// One traversal through everything that a robot runs; the odometer and the session go on from the one
+  /// before.
   void traverse(int number, MapManager& manager, RepeatSession& session) {
     manager.beginTraversal(now_s_);
     session.beginTraversal(0.0, number == 0 ? std::optional<double>() : odometer_.newestDistance());
@@ -84,7 +86,8 @@ class LongRun : public ::testing::Test {
       session.stepInto(now_s_, travelled_m, views_[static_cast<std::size_t>(turned)], step_);
       supervisor_.see(now_s_, travelled_m, sightOf(step_.registration.result), {});
       ASSERT_EQ(supervisor_.status().mode, NavigationMode::kRepeating) << "traversal " << number;
-      ASSERT_NEAR(*step_.registration.result.displacement_px, -6.0 * (turned - 1), 1.0) << "traversal " << number;
+      ASSERT_NEAR(*step_.registration.result.displacement_px, -6.0 * (turned - 1), 1.0)
+          << "traversal " << number;
       ASSERT_NEAR(step_.distance_m, place * kStep_m, 1e-6) << "traversal " << number;
       manager.observe(step_.local_map, step_.local_map_distance_m, observationOf(step_));
     }

@@ -148,7 +148,8 @@ double nearest(const std::vector<float>& ranges) {
 
 TEST(NearestInCorridor, looksStraightAheadOnly) {
   EXPECT_EQ(nearest({1.0F, 1.0F, 5.0F, 1.0F, 1.0F}), 5.0) << "beside the corridor";
-  EXPECT_NEAR(nearest({1.0F, 0.5F, 5.0F, 1.0F, 1.0F}), 0.5 * std::cos(M_PI / 4.0), 1e-6) << "0.35 m to the right";
+  EXPECT_NEAR(nearest({1.0F, 0.5F, 5.0F, 1.0F, 1.0F}), 0.5 * std::cos(M_PI / 4.0), 1e-6)
+      << "0.35 m to the right";
   EXPECT_EQ(nearest({}), kInfinity);
   const std::vector<float> behind{0.3F};
   EXPECT_EQ(nearestInCorridor(behind.data(), 1, M_PI, 0.1, 0.1, 10.0, 0.4), kInfinity);

@@ -28,7 +28,8 @@ class Supervisor : public ::testing::Test {
     travelled_m_ += moves_ ? 0.05 : 0.0;
     return supervisor_.see(now_s_, travelled_m_, sight, permit);
   }
-  const NavigationStatus& watch(double after_s, const std::string& missing = "", const MotionPermit& permit = {}) {
+  const NavigationStatus& watch(double after_s, const std::string& missing = "",
+                                const MotionPermit& permit = {}) {
     now_s_ += after_s;
     return supervisor_.watch(now_s_, missing, permit);
   }
@@ -131,7 +132,8 @@ TEST_F(Supervisor, stopsWithoutDataAndGoesOnWithIt) {
 TEST_F(Supervisor, givesUpWithoutData) {
   startAndSee();
   Mode mode = Mode::kRepeating;
-  for (double silent_s = 0.0; silent_s < settings_.give_up_s + 1.0 && mode != Mode::kFailed; silent_s += 0.5) {
+  for (double silent_s = 0.0; silent_s < settings_.give_up_s + 1.0 && mode != Mode::kFailed;
+       silent_s += 0.5) {
     mode = watch(0.5, "local map").mode;
   }
   EXPECT_EQ(mode, Mode::kFailed);

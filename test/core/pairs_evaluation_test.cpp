@@ -64,8 +64,8 @@ class PairsEvaluationTest : public ::testing::Test {
         const std::string name = std::to_string(traversal) + std::to_string(place) + ".png";
         const cv::Mat wide = texture(600, 240, static_cast<std::uint64_t>(10 + place));
         cv::imwrite(folder_ / name, wide(cv::Rect(100 - offset, 0, 400, 240)));
-        manifest << "run" << traversal << ",2020-01-0" << traversal + 1 << "T00:00:00Z," << place << "," << name << ","
-                 << offset << "\n";
+        manifest << "run" << traversal << ",2020-01-0" << traversal + 1 << "T00:00:00Z," << place << ","
+                 << name << "," << offset << "\n";
       }
     }
   }
@@ -102,8 +102,9 @@ TEST_F(PairsEvaluationTest, writesWhatOthersRead) {
   std::ifstream stream(folder_ / "out/summary.json");
   std::ostringstream json;
   json << stream.rdbuf();
-  for (const char* key : {"\"settings\": {\"registration/ratio\": \"0.7\"}", "\"answered_at_99_precision\": 1",
-                          "\"registrations\": 6", "\"35\": 1", "\"ms_per_extraction\"", "\"version\""}) {
+  for (const char* key :
+       {"\"settings\": {\"registration/ratio\": \"0.7\"}", "\"answered_at_99_precision\": 1",
+        "\"registrations\": 6", "\"35\": 1", "\"ms_per_extraction\"", "\"version\""}) {
     EXPECT_NE(json.str().find(key), std::string::npos) << key << " in " << json.str();
   }
 }

@@ -31,7 +31,8 @@ TEST(ParameterReader, givesDefaultsForMissingKeys) {
 }
 
 TEST(ParameterReader, readsValues) {
-  ParameterReader reader({{"a", false}, {"b", 3}, {"c", 2}, {"d", std::string("y")}, {"f", std::vector<double>{2.0}}});
+  ParameterReader reader(
+      {{"a", false}, {"b", 3}, {"c", 2}, {"d", std::string("y")}, {"f", std::vector<double>{2.0}}});
   EXPECT_FALSE(reader.boolean("a", true));
   EXPECT_EQ(reader.integer("b", 7, 0, 10), 3);
   EXPECT_EQ(reader.real("c", 0.5, 0.0, 5.0), 2.0) << "an integer serves as a real";
@@ -40,8 +41,9 @@ TEST(ParameterReader, readsValues) {
 }
 
 TEST(ParameterReader, errorsNameKeyAndRange) {
-  ParameterReader reader({{"count", 11}, {"ratio", std::numeric_limits<double>::quiet_NaN()}, {"kind", std::string("z")}},
-                         "/node/part/");
+  ParameterReader reader(
+      {{"count", 11}, {"ratio", std::numeric_limits<double>::quiet_NaN()}, {"kind", std::string("z")}},
+      "/node/part/");
   const std::string count = messageOf([&] { reader.integer("count", 1, 0, 10); });
   EXPECT_NE(count.find("/node/part/count"), std::string::npos) << count;
   EXPECT_NE(count.find("[0, 10]"), std::string::npos) << count;

@@ -1,4 +1,5 @@
-// The parts that a repeat is made of: path profile, steering, odometer, window of local maps, along-path correction.
+// The parts that a repeat is made of: path profile, steering, odometer, window of local maps, along-path
+// correction.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -77,11 +78,13 @@ TEST(Steering, limitsItsCorrectionAndNeverGivesNan) {
     EXPECT_LE(std::abs(velocity.angular - taught.angular), settings.max_correction + 1e-6);
   }
   const Velocity velocity = steer({kNan, kNan, kNan}, kNan, 500.0, settings);
-  EXPECT_TRUE(std::isfinite(velocity.forward) && std::isfinite(velocity.angular) && std::isfinite(velocity.flipper));
+  EXPECT_TRUE(std::isfinite(velocity.forward) && std::isfinite(velocity.angular) &&
+              std::isfinite(velocity.flipper));
 }
 
 TEST(Steering, slowedKeepsTheCurve) {
-  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.5), (Velocity{0.5, 0.2, 0.1})) << "flippers do not move the robot along";
+  EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.5), (Velocity{0.5, 0.2, 0.1}))
+      << "flippers do not move the robot along";
   EXPECT_EQ(slowed({1.0, 0.4, 0.1}, 0.0), Velocity{});
 }
 
@@ -161,7 +164,9 @@ TEST(ActiveMapWindow, forgetsWhatLiesBehindAndStartsAnewAfterAGap) {
 
 TEST(AlongPath, findsTheVertexOfAParabola) {
   for (double vertex = -0.09; vertex <= 0.07; vertex += 0.01) {  // so that the middle one has most
-    const auto evidence = [&](double d) { return PlaceEvidence{d, static_cast<int>(std::lround(1e6 * (1 - (d - vertex) * (d - vertex))))}; };
+    const auto evidence = [&](double d) {
+      return PlaceEvidence{d, static_cast<int>(std::lround(1e6 * (1 - (d - vertex) * (d - vertex))))};
+    };
     EXPECT_NEAR(*placeOfView(evidence(-0.2), evidence(0.0), evidence(0.15)), vertex, 1e-3);
   }
 }

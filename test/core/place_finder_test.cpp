@@ -12,7 +12,8 @@ namespace {
 
 using test_tools::SyntheticPlace;
 
-/// Local maps 0.2 m apart; every place, 1 m long, has landmarks of its own, unless it repeats after `period` places.
+/// Local maps 0.2 m apart; every place, 1 m long, has landmarks of its own, unless it repeats after `period`
+/// places.
 class Finding : public ::testing::Test {
  protected:
   static FeatureSet featuresAt(unsigned place, double dx = 0.0, std::size_t features = 500) {

@@ -68,7 +68,8 @@ TEST(Registration, isAntisymmetric) {
 }
 
 TEST(Registration, binsAroundZeroAreSymmetric) {
-  // 15 differences of -9 and 15 of +9 px share the bin of 0; truncating division would do so for +-19 as well.
+  // 15 differences of -9 and 15 of +9 px share the bin of 0; truncating division would do so for +-19 as
+  // well.
   FeatureSet map = randomFeatures(30, 3);
   FeatureSet view = map;
   for (std::size_t i = 0; i < 30; ++i) {
@@ -115,7 +116,8 @@ TEST(Registration, survivesOutliersAndUnmatchedFeatures) {
   for (std::size_t i = 220; i < 300; ++i) {
     EXPECT_EQ(result.states[i], FeatureState::kMatchedCorrectly);
   }
-  EXPECT_EQ(std::count(result.states.begin() + 150, result.states.begin() + 220, FeatureState::kNotMatched), 70);
+  EXPECT_EQ(std::count(result.states.begin() + 150, result.states.begin() + 220, FeatureState::kNotMatched),
+            70);
 }
 
 TEST(Registration, ratioTestMatchesABruteForceOracle) {
@@ -203,10 +205,12 @@ TEST(Registration, tiesGoToTheFullerNeighbourhoodThenToZero) {
   put(0, 8, -100.0F);
   put(8, 16, 100.0F);
   put(16, 21, 80.0F);
-  EXPECT_GT(*HistogramRegistration().registerView(map, view).displacement_px, 0.0) << "+100 has the neighbours";
+  EXPECT_GT(*HistogramRegistration().registerView(map, view).displacement_px, 0.0)
+      << "+100 has the neighbours";
   put(16, 21, 300.0F);
   put(0, 8, -60.0F);
-  EXPECT_NEAR(*HistogramRegistration().registerView(map, view).displacement_px, -60.0, 1e-3) << "nearer to zero";
+  EXPECT_NEAR(*HistogramRegistration().registerView(map, view).displacement_px, -60.0, 1e-3)
+      << "nearer to zero";
 }
 
 TEST(Registration, settingsAreChecked) {

@@ -20,13 +20,14 @@ INSTANTIATE_TEST_SUITE_P(RandomAdd, StrategyConformance,
                                                                           {"max_features", 200}}),
                                            strategyUnderTest<ScoreBased>({{"random_add", true}}),
                                            strategyUnderTest<FremenMap>({{"random_add", true}}),
-                      strategyUnderTest<AnchoredMap>({{"random_add", true}})));
+                                           strategyUnderTest<AnchoredMap>({{"random_add", true}})));
 
 INSTANTIATE_TEST_SUITE_P(
     Limits, StrategyConformance,
-    ::testing::Values(strategyUnderTest<AnchoredMap>({{"share", 1.0}, {"features_kept", 1}}),
-                      strategyUnderTest<AnchoredMap>({{"features_kept", 100}, {"taught_share", 0.0}}),
-                      
+    ::testing::Values(
+        strategyUnderTest<AnchoredMap>({{"share", 1.0}, {"features_kept", 1}}),
+        strategyUnderTest<AnchoredMap>({{"features_kept", 100}, {"taught_share", 0.0}}),
+
         strategyUnderTest<SummaryMap>({{"share", 1.0}, {"max_features", 1}}),
         strategyUnderTest<SummaryMap>({{"share", 1.0}, {"max_features", 300}}),
         strategyUnderTest<MultipleMaps>({{"max_alternatives", 1}}),

@@ -1,5 +1,5 @@
-// A whole teach and repeat in one process, on the core alone: images are cut from a random texture, their position is the
-// camera's heading.
+// A whole teach and repeat in one process, on the core alone: images are cut from a random texture, their
+// position is the camera's heading.
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -53,8 +53,10 @@ class TeachRepeat : public ::testing::Test {
   /// One traversal with the camera turned left by `left_px`; returns its steps.
   std::vector<NavigationStep> repeat(MapManager& manager, int left_px, double start_m = 0.0) {
     RepeatSettings settings;
-    settings.along_path.enabled = false;  // all views of 2 m are alike here: they say nothing about where they were taken
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings);
+    settings.along_path.enabled =
+        false;  // all views of 2 m are alike here: they say nothing about where they were taken
+    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(),
+                          settings);
     session.beginTraversal(start_m);
     manager.beginTraversal(1000.0);
     std::vector<NavigationStep> steps;
@@ -160,7 +162,8 @@ TEST_F(TeachRepeat, isDeterministic) {
   }
   ASSERT_EQ(runs[0].size(), runs[1].size());
   for (std::size_t i = 0; i < runs[0].size(); ++i) {
-    EXPECT_EQ(*runs[0][i].registration.result.displacement_px, *runs[1][i].registration.result.displacement_px);
+    EXPECT_EQ(*runs[0][i].registration.result.displacement_px,
+              *runs[1][i].registration.result.displacement_px);
     EXPECT_EQ(runs[0][i].view, runs[1][i].view);
   }
 }

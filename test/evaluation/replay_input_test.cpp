@@ -43,9 +43,9 @@ class ReplayInputTest : public ::testing::Test {
     const Dataset dataset = loadDataset(folder_.path());
     problems_.clear();
     images_ = 0;
-    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), {ExtractionSettings::published(), false},
-                           FeatureCache(folder_ / "cache"), 2, problems_,
-                           [&](std::size_t done) { images_ = std::max(images_, done); });
+    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_),
+                           {ExtractionSettings::published(), false}, FeatureCache(folder_ / "cache"), 2,
+                           problems_, [&](std::size_t done) { images_ = std::max(images_, done); });
   }
 
   bool hasProblem(const std::string& where, const std::string& what) const {

@@ -1,5 +1,5 @@
-// Any bytes, then a good status: the parser must find the good one, account for every byte, and never read beyond its
-// buffer. The robot's side must take any bytes as commands, too.
+// Any bytes, then a good status: the parser must find the good one, account for every byte, and never read
+// beyond its buffer. The robot's side must take any bytes as commands, too.
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
@@ -22,8 +22,8 @@ void decodeCommands(const std::uint8_t* data, std::size_t size) {
     std::copy_n(data, bytes.size(), bytes.begin());
     if (const auto command = decodeCommand(bytes)) {
       const auto again = decodeCommand(encode(*command));
-      require(again && std::abs(again->forward) <= kCameleonMaxForward && std::abs(again->turn) <= kCameleonMaxTurn &&
-              std::abs(again->flipper) <= kCameleonMaxFlipper);
+      require(again && std::abs(again->forward) <= kCameleonMaxForward &&
+              std::abs(again->turn) <= kCameleonMaxTurn && std::abs(again->flipper) <= kCameleonMaxFlipper);
     }
   }
 }
@@ -42,7 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     last = parser.push(byte);
   }
   require(last && *last == good);
-  require(parser.counters().stray_bytes + kCameleonStatusSize * parser.counters().frames == size + kCameleonStatusSize);
+  require(parser.counters().stray_bytes + kCameleonStatusSize * parser.counters().frames ==
+          size + kCameleonStatusSize);
   decodeCommands(data, size);
   return 0;
 }

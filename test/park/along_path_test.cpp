@@ -1,5 +1,5 @@
-// What the along-path correction is worth when the odometry is wrong. PERENNIAL_ALONG_PATH_TABLE=1 measures the whole table of
-// docs/navigation.md; without it one row is tested.
+// What the along-path correction is worth when the odometry is wrong. PERENNIAL_ALONG_PATH_TABLE=1 measures
+// the whole table of docs/navigation.md; without it one row is tested.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -33,9 +33,9 @@ class AlongPath : public ClosedLoop {
     may_get_lost_ = true;  // without the correction it may
     MapManager maps = manager(std::make_shared<strategies::StaticMap>());
     const std::vector<TrackError> errors = repeat(*park_, maps, 1).front();
-    std::printf("| %2.0f %% | %2.0f %% | %s | %.3f | %.3f | %.3f | %.3f |\n", 100.0 * fault.scale, 100.0 * fault.turn_slip,
-                corrected ? "with" : "without", rms(errors), largest(errors), rms(errors, &TrackError::along_m),
-                largest(errors, &TrackError::along_m));
+    std::printf("| %2.0f %% | %2.0f %% | %s | %.3f | %.3f | %.3f | %.3f |\n", 100.0 * fault.scale,
+                100.0 * fault.turn_slip, corrected ? "with" : "without", rms(errors), largest(errors),
+                rms(errors, &TrackError::along_m), largest(errors, &TrackError::along_m));
     std::fflush(stdout);
     return errors;
   }

@@ -34,7 +34,8 @@ inline double rms(const std::vector<TrackError>& errors, double TrackError::*par
   return errors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-inline double largest(const std::vector<TrackError>& errors, double TrackError::*part = &TrackError::lateral_m) {
+inline double largest(const std::vector<TrackError>& errors,
+                      double TrackError::*part = &TrackError::lateral_m) {
   double worst = 0.0;
   for (const TrackError& error : errors) {
     worst = std::max(worst, std::abs(error.*part));
@@ -44,8 +45,8 @@ inline double largest(const std::vector<TrackError>& errors, double TrackError::
 
 /// What is wrong with the odometry of a repeat, over the one of the teaching.
 struct OdometryFault {
-  double scale = 0.0;       ///< the distance is (1 + this) times the true one
-  double turn_slip = 0.0;   ///< in turns it is longer by this share on top: wheels that slip
+  double scale = 0.0;      ///< the distance is (1 + this) times the true one
+  double turn_slip = 0.0;  ///< in turns it is longer by this share on top: wheels that slip
 };
 
 /// Teaches and repeats the loop of the embedded world on the core alone.
@@ -97,8 +98,8 @@ class ClosedLoop : public ::testing::Test {
     return session.finish(odometer.newestDistance());
   }
 
-  /// From the taught track (not from the ideal path). The loop ends where it starts: of the two the one that fits `distance_m`,
-  /// where navigation believes to be.
+  /// From the taught track (not from the ideal path). The loop ends where it starts: of the two the one that
+  /// fits `distance_m`, where navigation believes to be.
   TrackError errorOf(const park::Pose& pose, double distance_m) const {
     TrackError best;
     double nearest = 1e9;
@@ -111,15 +112,18 @@ class ClosedLoop : public ::testing::Test {
       if (std::hypot(dx, dy) < nearest) {
         nearest = std::hypot(dx, dy);
         best.lateral_m = -std::sin(taught_[i].heading) * dx + std::cos(taught_[i].heading) * dy;
-        best.along_m = distance_m - taught_m_[i] - std::cos(taught_[i].heading) * dx - std::sin(taught_[i].heading) * dy;
+        best.along_m =
+            distance_m - taught_m_[i] - std::cos(taught_[i].heading) * dx - std::sin(taught_[i].heading) * dy;
       }
     }
     return best;
   }
 
   /// Repeats the path `traversals` times without a stop; the errors of each traversal.
-  std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager, int traversals) {
-    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings_);
+  std::vector<std::vector<TrackError>> repeat(park::ParkSimulation& park, MapManager& manager,
+                                              int traversals) {
+    RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(),
+                          settings_);
     session.setFocalLength(park.settings().camera.geometry.fx);
     Odometer odometer;
     std::vector<std::vector<TrackError>> errors;

@@ -22,10 +22,12 @@ TEST_F(ClosedLoop, convergesFromBesideThePath) {
   park.place(0.4, 6.0 * kDegree);
   MapManager maps = manager(std::make_shared<strategies::StaticMap>());
   const auto errors = repeat(park, maps, 1).front();
-  const std::vector<TrackError> second_half(errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-  std::printf("from 0.4 m and 6 degrees off: cross-track RMS %.3f m over the second half, largest there %.3f m, "
-              "%d of %d images registered\n",
-              rms(second_half), largest(second_half), registered_, images_);
+  const std::vector<TrackError> second_half(errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                                            errors.end());
+  std::printf(
+      "from 0.4 m and 6 degrees off: cross-track RMS %.3f m over the second half, largest there %.3f m, "
+      "%d of %d images registered\n",
+      rms(second_half), largest(second_half), registered_, images_);
   EXPECT_GT(largest(errors), 0.3) << "it did start beside the path";
   EXPECT_LE(rms(second_half), 0.10);
 }
@@ -42,13 +44,14 @@ TEST_F(ClosedLoop, tenLoopsWithNoisyOdometryStayOnThePath) {
   const auto loops = repeat(park, maps, 10);
   ASSERT_EQ(loops.size(), 10U);
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    std::printf("loop %zu: cross-track RMS %.3f m, largest %.3f m\n", i + 1, rms(loops[i]), largest(loops[i]));
+    std::printf("loop %zu: cross-track RMS %.3f m, largest %.3f m\n", i + 1, rms(loops[i]),
+                largest(loops[i]));
     EXPECT_LE(largest(loops[i]), 0.15) << "loop " << i + 1;
   }
 }
 
-/// Not a test but the comparison in docs/registration.md: taught at noon in June, then from beside the path under other
-/// conditions, without learning. Minutes; run with --gtest_also_run_disabled_tests.
+/// Not a test but the comparison in docs/registration.md: taught at noon in June, then from beside the path
+/// under other conditions, without learning. Minutes; run with --gtest_also_run_disabled_tests.
 TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
   struct Setting {
     const char* name;
@@ -56,17 +59,19 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
     bool half_and_buckets;
     double min_confidence;
   };
-  const std::vector<std::pair<const char*, park::Weather>> whens{{"2026-06-21T13:00:00Z", park::Weather::kClear},
-                                                                 {"2026-06-21T15:00:00Z", park::Weather::kRain},
-                                                                 {"2026-06-21T19:20:00Z", park::Weather::kClear},
-                                                                 {"2026-06-21T22:30:00Z", park::Weather::kClear},
-                                                                 {"2026-10-20T12:00:00Z", park::Weather::kOvercast}};
+  const std::vector<std::pair<const char*, park::Weather>> whens{
+      {"2026-06-21T13:00:00Z", park::Weather::kClear},
+      {"2026-06-21T15:00:00Z", park::Weather::kRain},
+      {"2026-06-21T19:20:00Z", park::Weather::kClear},
+      {"2026-06-21T22:30:00Z", park::Weather::kClear},
+      {"2026-10-20T12:00:00Z", park::Weather::kOvercast}};
   may_get_lost_ = true;
-  for (const Setting& setting : {Setting{"histogram, full", RegistrationMethod::kHistogram, false, 0.0},
-                                 Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, 0.0},
-                                 Setting{"robust, full", RegistrationMethod::kRobust, false, 0.0},
-                                 Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, 0.0},
-                                 Setting{"the same, the default", RegistrationMethod::kRobust, true, 0.4}}) {
+  for (const Setting& setting :
+       {Setting{"histogram, full", RegistrationMethod::kHistogram, false, 0.0},
+        Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, 0.0},
+        Setting{"robust, full", RegistrationMethod::kRobust, false, 0.0},
+        Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, 0.0},
+        Setting{"the same, the default", RegistrationMethod::kRobust, true, 0.4}}) {
     settings_.registration.method = setting.method;
     settings_.registration.min_confidence = setting.min_confidence;
     settings_.extraction = setting.half_and_buckets ? ExtractionSettings() : ExtractionSettings::published();
@@ -83,10 +88,10 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
       park.place(0.4, 6.0 * kDegree);
       images_ = registered_ = 0;
       const auto errors = repeat(park, maps, 1).front();
-      const std::vector<TrackError> second_half(errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
-                                                errors.end());
-      std::printf("%-26s %s %d | second half RMS %.3f m, largest %.3f m | registered %5.1f %% | %s\n", setting.name,
-                  date_time, static_cast<int>(weather), rms(second_half), largest(second_half),
+      const std::vector<TrackError> second_half(
+          errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+      std::printf("%-26s %s %d | second half RMS %.3f m, largest %.3f m | registered %5.1f %% | %s\n",
+                  setting.name, date_time, static_cast<int>(weather), rms(second_half), largest(second_half),
                   100.0 * registered_ / images_, lost_ ? "LOST" : "finished");
       std::fflush(stdout);
     }

@@ -1,6 +1,7 @@
-// core_displacements DATASET TAUGHT REPEATED [GROUP/KEY=VALUE]...: registers one traversal of a data set against another in one
-// process, on the core alone, and prints a line for each image: distance, displacement or "none", ground truth. The numbers
-// are hexadecimal, so that a test can compare them with the nodes' to the last digit.
+// core_displacements DATASET TAUGHT REPEATED [GROUP/KEY=VALUE]...: registers one traversal of a data set
+// against another in one process, on the core alone, and prints a line for each image: distance, displacement
+// or "none", ground truth. The numbers are hexadecimal, so that a test can compare them with the nodes' to
+// the last digit.
 #include <cstdio>
 #include <exception>
 #include <string>

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <string>
 
-/// Exceptions of the core. The core throws for misuse and for bad input from outside; an expected "no result" is a
-/// std::optional. Every message says what was wrong, where (file, line, key) and what to do about it.
+/// Exceptions of the core. The core throws for misuse and for bad input from outside; an expected "no result"
+/// is a std::optional. Every message says what was wrong, where (file, line, key) and what to do about it.
 namespace perennial {
 
 /// Base of all exceptions thrown by this library.

@@ -7,8 +7,8 @@
 
 namespace perennial {
 
-/// An interest point of an image. Coordinates are in pixels of the full image, origin at the centre of the top left
-/// pixel, x to the right, y down.
+/// An interest point of an image. Coordinates are in pixels of the full image, origin at the centre of the
+/// top left pixel, x to the right, y down.
 struct Keypoint {
   float x = 0.0F;
   float y = 0.0F;

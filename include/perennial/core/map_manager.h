@@ -15,8 +15,8 @@
 namespace perennial {
 
 struct MapManagerSettings {
-  double lookahead_m = 5.0;        ///< local maps are handed out this far ahead of the robot
-  double lookbehind_m = 1.0;       ///< and this far behind it
+  double lookahead_m = 5.0;   ///< local maps are handed out this far ahead of the robot
+  double lookbehind_m = 1.0;  ///< and this far behind it
   /// Keys: min_inliers_for_update, min_confidence_for_update.
   LearningGate gate;
 
@@ -24,29 +24,31 @@ struct MapManagerSettings {
   static MapManagerSettings load(ParameterReader& reader);
 };
 
-/// Keeps one map through its traversals: hands out local maps as the strategy wants them used, and learns, once per
-/// local map and traversal, from the observation taken nearest to the local map's distance. What a traversal taught is
-/// stored in one transaction at its end, or not at all. Not thread-safe. Throws MapError.
+/// Keeps one map through its traversals: hands out local maps as the strategy wants them used, and learns,
+/// once per local map and traversal, from the observation taken nearest to the local map's distance. What a
+/// traversal taught is stored in one transaction at its end, or not at all. Not thread-safe. Throws MapError.
 class MapManager {
  public:
-  MapManager(MapFile file, std::shared_ptr<const MapStrategy> strategy, const MapManagerSettings& settings = {});
+  MapManager(MapFile file, std::shared_ptr<const MapStrategy> strategy,
+             const MapManagerSettings& settings = {});
 
-  /// `stamp_s`: time of the traversal, by which the strategy chooses features. An open traversal is discarded.
+  /// `stamp_s`: time of the traversal, by which the strategy chooses features. An open traversal is
+  /// discarded.
   void beginTraversal(double stamp_s);
 
-  /// Local maps to send for a robot at this distance: those around it that were not handed out in this traversal yet,
-  /// in order, without gaps; always including the next two, however far.
+  /// Local maps to send for a robot at this distance: those around it that were not handed out in this
+  /// traversal yet, in order, without gaps; always including the next two, however far.
   std::vector<std::uint32_t> due(double distance_m);
 
   /// A local map as it is used in this traversal.
   ActiveMap activeMap(std::uint32_t index) const;
 
-  /// What was seen near local map `index`, which lies at `local_map_distance_m`. Observations that do not pass the gate are
-  /// ignored.
+  /// What was seen near local map `index`, which lies at `local_map_distance_m`. Observations that do not
+  /// pass the gate are ignored.
   void observe(std::uint32_t index, double local_map_distance_m, Observation observation);
 
-  /// Learns from what is still pending and stores everything (`commit`) or forgets it. Returns how many local maps
-  /// changed.
+  /// Learns from what is still pending and stores everything (`commit`) or forgets it. Returns how many local
+  /// maps changed.
   std::size_t endTraversal(bool commit, double stamp_s);
 
   bool inTraversal() const { return in_traversal_; }

@@ -35,8 +35,8 @@ struct ObstacleSettings {
 };
 
 struct OverrideSettings {
-  double timeout_s = 0.3;    ///< a command by hand holds so long
-  double release_s = 1.0;    ///< the repeat goes on when no command by hand, or by a stranger, came for so long
+  double timeout_s = 0.3;  ///< a command by hand holds so long
+  double release_s = 1.0;  ///< the repeat goes on when no command by hand, or by a stranger, came for so long
 
   /// Keys as the members are called. Throws ParameterError.
   static OverrideSettings load(ParameterReader& reader);
@@ -66,21 +66,24 @@ struct MotionPermit {
 enum class EmergencyStop { kTopic, kService };
 enum class ObstacleSensor { kRange, kScan, kFlag };
 
-/// Gathers everything that forbids motion from outside of navigation: emergency stops, a dead man's signal, obstacles, a
-/// person's commands, strangers on the command topic, a master that is gone. Knows no clock: times are seconds of one clock
-/// of the caller's; after that clock has gone back nothing counts as fresh. Not thread-safe.
+/// Gathers everything that forbids motion from outside of navigation: emergency stops, a dead man's signal,
+/// obstacles, a person's commands, strangers on the command topic, a master that is gone. Knows no clock:
+/// times are seconds of one clock of the caller's; after that clock has gone back nothing counts as fresh.
+/// Not thread-safe.
 class MotionInterlock {
  public:
   explicit MotionInterlock(const InterlockSettings& settings = {}) : settings_(settings) {}
 
-  /// Engaged: the robot stops. Released: it goes on only after resume(), for releasing a stop must not start a robot.
+  /// Engaged: the robot stops. Released: it goes on only after resume(), for releasing a stop must not start
+  /// a robot.
   void setEmergencyStop(EmergencyStop source, bool engaged);
   /// Whether the robot may go on; not while an emergency stop is engaged.
   bool resume();
 
   /// A sign of life: `held`: whether the button is down (a heartbeat: always).
   void deadMan(bool held, double now_s);
-  /// Distance of the nearest thing in the way; infinity when there is none, NaN when the sensor does not know.
+  /// Distance of the nearest thing in the way; infinity when there is none, NaN when the sensor does not
+  /// know.
   void obstacle(ObstacleSensor sensor, double distance_m, double now_s);
   /// A velocity commanded by a person. One that is not finite counts as zero.
   void teleop(const Velocity& velocity, double now_s);
@@ -117,9 +120,10 @@ class MotionInterlock {
   bool master_alive_ = true;
 };
 
-/// Distance ahead of the nearest point of a scan within the corridor |y| <= half_width_m, x > 0; infinity when there is none.
-/// Ray i points `angle_min + i * angle_increment` to the left of straight on. As REP 117 has it, -inf is something too near to
-/// measure, taken for range_min; +inf, NaN and readings outside of [range_min, range_max] see nothing.
+/// Distance ahead of the nearest point of a scan within the corridor |y| <= half_width_m, x > 0; infinity
+/// when there is none. Ray i points `angle_min + i * angle_increment` to the left of straight on. As REP 117
+/// has it, -inf is something too near to measure, taken for range_min; +inf, NaN and readings outside of
+/// [range_min, range_max] see nothing.
 double nearestInCorridor(const float* ranges, std::size_t count, double angle_min, double angle_increment,
                          double range_min, double range_max, double half_width_m);
 

@@ -16,8 +16,8 @@ struct SupervisorSettings {
   double least_speed = 0.4;           ///< share of the taught speed with the lowest confidence
   double full_confidence = 0.9;       ///< from this confidence on the taught speed is driven
   int frozen_images = 10;             ///< so many identical images on the way: the camera is frozen; 0: never
-  double sensor_timeout_s = 0.5;      ///< nothing seen for so long: stopped. Not in the group; as the node's own
-  double give_up_s = 10.0;            ///< nothing seen for so long: failed. Not in the group; as the node's own
+  double sensor_timeout_s = 0.5;  ///< nothing seen for so long: stopped. Not in the group; as the node's own
+  double give_up_s = 10.0;        ///< nothing seen for so long: failed. Not in the group; as the node's own
 
   /// Keys as the members are called. Throws ParameterError.
   static SupervisorSettings load(ParameterReader& reader);
@@ -43,11 +43,11 @@ struct NavigationStatus {
   double speed_factor = 0.0;  ///< share of the taught speed to drive with; 0: stand
 };
 
-/// Decides whether a repeat may go on, how fast, and says why. A state machine without clock, threads or ROS: times are
-/// seconds of one clock of the caller's (the stamps of messages, in practice). Not thread-safe.
+/// Decides whether a repeat may go on, how fast, and says why. A state machine without clock, threads or ROS:
+/// times are seconds of one clock of the caller's (the stamps of messages, in practice). Not thread-safe.
 ///
-/// idle -start-> starting -a view-> repeating <-> degraded <-> holding; stopped from any of these and back; finished, failed and
-/// idle end a goal. Several reasons at once: the one that forbids most wins.
+/// idle -start-> starting -a view-> repeating <-> degraded <-> holding; stopped from any of these and back;
+/// finished, failed and idle end a goal. Several reasons at once: the one that forbids most wins.
 class NavigationSupervisor {
  public:
   explicit NavigationSupervisor(const SupervisorSettings& settings = {});
@@ -55,8 +55,10 @@ class NavigationSupervisor {
   /// A goal was accepted.
   void start(double now_s);
   /// An image was registered: taken at `stamp_s`, having travelled `travelled_m`.
-  const NavigationStatus& see(double stamp_s, double travelled_m, const Sight& sight, const MotionPermit& permit);
-  /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image", "odometry", ...
+  const NavigationStatus& see(double stamp_s, double travelled_m, const Sight& sight,
+                              const MotionPermit& permit);
+  /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
+  /// "odometry", ...
   const NavigationStatus& watch(double now_s, const std::string& missing, const MotionPermit& permit);
   /// Images came that cannot be used, and why; empty: they can again.
   void setImageProblem(const std::string& problem) { image_problem_ = problem; }
@@ -82,12 +84,12 @@ class NavigationSupervisor {
 
   SupervisorSettings settings_;
   NavigationStatus status_{NavigationMode::kIdle, "waiting for a goal", 0.0};
-  double newest_s_ = 0.0;                 ///< newest time heard of
-  double seen_s_ = 0.0;                   ///< stamp of the newest image used, or of the goal
+  double newest_s_ = 0.0;  ///< newest time heard of
+  double seen_s_ = 0.0;    ///< stamp of the newest image used, or of the goal
   bool seen_any_ = false;
   Sight sight_;
-  double blind_from_m_ = 0.0;             ///< travelled distance where the path was last recognised
-  double blind_m_ = 0.0;                  ///< driven since
+  double blind_from_m_ = 0.0;  ///< travelled distance where the path was last recognised
+  double blind_m_ = 0.0;       ///< driven since
   std::optional<double> holding_since_s_;
   std::string image_problem_;
 };

@@ -10,8 +10,8 @@ namespace perennial {
 
 /// Pose and velocity of the robot as its odometry reports them.
 struct OdometrySample {
-  double stamp_s = 0.0;      ///< seconds since 1970
-  double x_m = 0.0;          ///< in the odometry's own frame
+  double stamp_s = 0.0;  ///< seconds since 1970
+  double x_m = 0.0;      ///< in the odometry's own frame
   double y_m = 0.0;
   double forward_m_s = 0.0;  ///< velocity in the robot's frame
   double angular_rad_s = 0.0;
@@ -25,17 +25,18 @@ struct OdometerSettings {
   static OdometerSettings load(ParameterReader& reader);
 };
 
-/// Travelled distance from odometry: the sum of the lengths of its steps, backwards driving counted like forwards.
-/// Not thread-safe.
+/// Travelled distance from odometry: the sum of the lengths of its steps, backwards driving counted like
+/// forwards. Not thread-safe.
 class Odometer {
  public:
   explicit Odometer(const OdometerSettings& settings = {}) : settings_(settings) {}
 
-  /// Takes a sample; returns an empty text, or why the sample was refused: not finite, stamped before the last one or
-  /// a jump. A refused sample changes nothing. A repeated stamp is ignored.
+  /// Takes a sample; returns an empty text, or why the sample was refused: not finite, stamped before the
+  /// last one or a jump. A refused sample changes nothing. A repeated stamp is ignored.
   std::string add(const OdometrySample& sample);
 
-  /// Travelled distance at this time, interpolated. None when it lies after the newest sample or before the history.
+  /// Travelled distance at this time, interpolated. None when it lies after the newest sample or before the
+  /// history.
   std::optional<double> distanceAt(double stamp_s) const;
 
   /// The newest sample; none before the first.

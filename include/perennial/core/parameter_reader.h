@@ -11,9 +11,9 @@ namespace perennial {
 using ParameterValue = std::variant<bool, int, double, std::string, std::vector<double>>;
 using Parameters = std::map<std::string, ParameterValue>;
 
-/// Reads the parameters of one component, strictly: a value of the wrong type or out of its range, and any key that
-/// nobody asked for, is an error that names the key. It knows nothing of ROS, so that whatever reads parameters
-/// through it (strategies above all) is tested without a node.
+/// Reads the parameters of one component, strictly: a value of the wrong type or out of its range, and any
+/// key that nobody asked for, is an error that names the key. It knows nothing of ROS, so that whatever reads
+/// parameters through it (strategies above all) is tested without a node.
 ///
 /// Typical use, in a component's `load()`:
 ///

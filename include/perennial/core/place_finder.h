@@ -17,15 +17,16 @@ namespace perennial {
 struct PlaceGuess {
   bool sure = false;
   double distance_m = 0.0;
-  std::uint32_t index = 0;   ///< of the local map
-  double certainty = 0.0;    ///< 0 to 1: confidence of the registration, less what speaks for another place
+  std::uint32_t index = 0;  ///< of the local map
+  double certainty = 0.0;   ///< 0 to 1: confidence of the registration, less what speaks for another place
   int inliers = 0;
-  std::string reason;        ///< for a person: where, or why not
+  std::string reason;  ///< for a person: where, or why not
 };
 
-/// Finds a view among all local maps of a path: the strongest features of the view against every local map, then the whole view
-/// against the likeliest. Not sure when no place is recognised, or when another place, more than 3 m away, speaks for itself
-/// nearly as well. The two ends of a loop are one place. Not thread-safe.
+/// Finds a view among all local maps of a path: the strongest features of the view against every local map,
+/// then the whole view against the likeliest. Not sure when no place is recognised, or when another place,
+/// more than 3 m away, speaks for itself nearly as well. The two ends of a loop are one place. Not
+/// thread-safe.
 class PlaceFinder {
  public:
   explicit PlaceFinder(const RegistrationSettings& settings = {});

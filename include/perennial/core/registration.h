@@ -31,18 +31,18 @@ std::optional<RegistrationMethod> registrationMethod(const std::string& name);
 
 struct RegistrationSettings {
   RegistrationMethod method = RegistrationMethod::kRobust;  ///< "histogram" or "robust"
-  double ratio = 0.7;               ///< histogram: a pair needs distance(nearest) < ratio * distance(second nearest)
-  double max_vertical_px = 50.0;    ///< pairs whose vertical difference exceeds this are dropped
-  double bin_width_px = 20.0;       ///< width of the histogram's bins
-  int min_inliers = 5;              ///< fewer agreeing pairs: no displacement
-  double min_confidence = 0.4;      ///< lower confidence: no displacement; see docs/registration.md
+  double ratio = 0.7;  ///< histogram: a pair needs distance(nearest) < ratio * distance(second nearest)
+  double max_vertical_px = 50.0;  ///< pairs whose vertical difference exceeds this are dropped
+  double bin_width_px = 20.0;     ///< width of the histogram's bins
+  int min_inliers = 5;            ///< fewer agreeing pairs: no displacement
+  double min_confidence = 0.4;    ///< lower confidence: no displacement; see docs/registration.md
 
   /// Keys as the members are called. Throws ParameterError.
   static RegistrationSettings load(ParameterReader& reader);
 };
 
-/// Votes for horizontal displacements. Bin k, for k in [-half, half], stands at `counts[k + half]` and holds the
-/// differences that round to k bin widths, halves away from zero: the bins are symmetric about 0.
+/// Votes for horizontal displacements. Bin k, for k in [-half, half], stands at `counts[k + half]` and holds
+/// the differences that round to k bin widths, halves away from zero: the bins are symmetric about 0.
 struct DisplacementHistogram {
   double bin_width_px = 0.0;
   std::vector<int> counts;  ///< odd length; the middle one is centred on 0
@@ -58,19 +58,20 @@ struct DisplacementHistogram {
 struct RegistrationResult {
   /// x_map - x_view, px; none when fewer than `min_inliers` pairs agree or `min_confidence` is not reached.
   std::optional<double> displacement_px;
-  /// Estimated probability that the best displacement is right within 35 px, also when it is not given; 0 without any
-  /// votes. Calibrated on real images, see docs/registration.md.
+  /// Estimated probability that the best displacement is right within 35 px, also when it is not given; 0
+  /// without any votes. Calibrated on real images, see docs/registration.md.
   double confidence = 0.0;
-  double uncertainty_px = 0.0;  ///< deviation of the agreeing votes about the displacement: the width of the peak
+  double uncertainty_px =
+      0.0;          ///< deviation of the agreeing votes about the displacement: the width of the peak
   int inliers = 0;  ///< pairs that agree with the best displacement, also when they are too few
   int matches = 0;  ///< pairs within the vertical gate, agreeing or not
   DisplacementHistogram histogram;
-  std::vector<FeatureState> states;        ///< one per map feature
-  std::vector<std::int32_t> partners;      ///< one per map feature: index of the view feature, or -1
+  std::vector<FeatureState> states;    ///< one per map feature
+  std::vector<std::int32_t> partners;  ///< one per map feature: index of the view feature, or -1
 };
 
-/// Memory that a registration works in. Kept from call to call so that nothing is allocated once it has grown; its
-/// content means nothing between calls. One serves one thread.
+/// Memory that a registration works in. Kept from call to call so that nothing is allocated once it has
+/// grown; its content means nothing between calls. One serves one thread.
 class RegistrationWorkspace {
  public:
   RegistrationWorkspace();
@@ -95,8 +96,8 @@ class Registration {
 
   RegistrationResult registerView(const FeatureSet& map, const FeatureSet& view) const;
 
-  /// The same into a result whose memory is used again. Allocates nothing when workspace and result have served for as
-  /// many features before.
+  /// The same into a result whose memory is used again. Allocates nothing when workspace and result have
+  /// served for as many features before.
   virtual void registerInto(const FeatureSet& map, const FeatureSet& view, RegistrationWorkspace& workspace,
                             RegistrationResult& result) const = 0;
 
@@ -113,11 +114,12 @@ class Registration {
 /// The registration that `settings.method` asks for.
 std::unique_ptr<Registration> makeRegistration(const RegistrationSettings& settings);
 
-/// Registration by voting, as in Halodova et al., IROS 2019, section III: Hamming matching with a ratio test, a
-/// vertical gate, a histogram of horizontal differences, and the mean of the differences around its fullest bin.
+/// Registration by voting, as in Halodova et al., IROS 2019, section III: Hamming matching with a ratio test,
+/// a vertical gate, a histogram of horizontal differences, and the mean of the differences around its fullest
+/// bin.
 ///
-/// A ratio needs a second neighbour, so a view of a single feature matches nothing. Of several equally full bins the
-/// one whose two neighbours hold more wins, then the one nearer to zero, then the positive one.
+/// A ratio needs a second neighbour, so a view of a single feature matches nothing. Of several equally full
+/// bins the one whose two neighbours hold more wins, then the one nearer to zero, then the positive one.
 class HistogramRegistration : public Registration {
  public:
   explicit HistogramRegistration(const RegistrationSettings& settings = {}) : Registration(settings) {}
@@ -128,14 +130,16 @@ class HistogramRegistration : public Registration {
 
 /// Registration by soft votes, for scenes that changed a lot between map and view.
 ///
-/// Only features within the vertical gate are compared. Each map feature votes for the displacements to its five
-/// nearest view features, and a vote weighs 1 / (a b) where the two are each other's a-th and b-th nearest (a, b <= 5;
-/// mutual nearest neighbours have weight 1): no threshold on descriptors decides before the scene as a whole is heard.
-/// The votes, smoothed by a Gaussian, have a peak, which is refined to a fraction of a pixel (mean shift: Comaniciu and
-/// Meer, PAMI 2002). Of equal peaks the one nearer to zero wins, then the positive one.
+/// Only features within the vertical gate are compared. Each map feature votes for the displacements to its
+/// five nearest view features, and a vote weighs 1 / (a b) where the two are each other's a-th and b-th
+/// nearest (a, b <= 5; mutual nearest neighbours have weight 1): no threshold on descriptors decides before
+/// the scene as a whole is heard. The votes, smoothed by a Gaussian, have a peak, which is refined to a
+/// fraction of a pixel (mean shift: Comaniciu and Meer, PAMI 2002). Of equal peaks the one nearer to zero
+/// wins, then the positive one.
 ///
-/// Pairs, which decide on the features' states and count as inliers, are mutual nearest neighbours that resemble each
-/// other; they agree within 1.5 bins. `histogram` holds the pairs, in hard bins, for people to look at.
+/// Pairs, which decide on the features' states and count as inliers, are mutual nearest neighbours that
+/// resemble each other; they agree within 1.5 bins. `histogram` holds the pairs, in hard bins, for people to
+/// look at.
 class RobustRegistration : public Registration {
  public:
   explicit RobustRegistration(const RegistrationSettings& settings = {}) : Registration(settings) {}

@@ -29,25 +29,25 @@ struct RepeatSettings {
 /// What came of one image.
 struct NavigationStep {
   double stamp_s = 0.0;
-  double distance_m = 0.0;              ///< along the path, as assumed before the image was seen
-  std::uint32_t local_map = 0;          ///< index of the local map registered against
+  double distance_m = 0.0;      ///< along the path, as assumed before the image was seen
+  std::uint32_t local_map = 0;  ///< index of the local map registered against
   double local_map_distance_m = 0.0;
-  std::vector<std::uint32_t> positions; ///< of the features registered: position in the stored local map
+  std::vector<std::uint32_t> positions;  ///< of the features registered: position in the stored local map
   ActiveRegistration registration;
   FeatureSet view;
-  Velocity velocity;                    ///< to send to the robot, at the taught speed
+  Velocity velocity;  ///< to send to the robot, at the taught speed
 };
 
-/// Follows a taught path: from an image and the travelled distance to a velocity. What the repeat navigator runs, and
-/// the same without ROS. Local maps are pushed in ahead of time. Not thread-safe.
+/// Follows a taught path: from an image and the travelled distance to a velocity. What the repeat navigator
+/// runs, and the same without ROS. Local maps are pushed in ahead of time. Not thread-safe.
 class RepeatSession {
  public:
   /// Throws MapError when the map was taught with other extraction settings.
   RepeatSession(const MapMetadata& map, const PathProfile& profile, std::size_t local_maps,
                 const RepeatSettings& settings);
 
-  /// A traversal begins at `start_m` of the path, where the robot stands having travelled `travelled_m` in all; without
-  /// that, where it stands when the first image is taken.
+  /// A traversal begins at `start_m` of the path, where the robot stands having travelled `travelled_m` in
+  /// all; without that, where it stands when the first image is taken.
   void beginTraversal(double start_m, std::optional<double> travelled_m = std::nullopt);
 
   /// Place along the path; may lie beyond its end, which is the overshoot to begin the next traversal with.
@@ -57,7 +57,8 @@ class RepeatSession {
   bool atEnd(double travelled_m) const { return distance(travelled_m) >= length_m_; }
   double length() const { return length_m_; }
 
-  /// The robot's place along the path changes by this; for what the odometer does not know, as a person driving it back.
+  /// The robot's place along the path changes by this; for what the odometer does not know, as a person
+  /// driving it back.
   void shift(double distance_m) { start_m_ += distance_m; }
 
   void add(ActiveMap map) { window_.add(std::move(map)); }
@@ -69,7 +70,8 @@ class RepeatSession {
 
   /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
-  /// The same into a step whose memory is used again: once it has served for as many features, nothing is allocated.
+  /// The same into a step whose memory is used again: once it has served for as many features, nothing is
+  /// allocated.
   void stepInto(double stamp_s, double travelled_m, const cv::Mat& image, NavigationStep& step);
 
   /// Steering and registration may change on the way; a camera's focal length may become known.

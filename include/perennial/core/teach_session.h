@@ -15,10 +15,11 @@
 namespace perennial {
 
 struct TeachSettings {
-  double map_interval_m = 0.2;       ///< a local map is made every so far
-  /// Where the velocity profile comes from: "commands", "odometry", or "auto": the commands if any of them drove.
+  double map_interval_m = 0.2;  ///< a local map is made every so far
+  /// Where the velocity profile comes from: "commands", "odometry", or "auto": the commands if any of them
+  /// drove.
   std::string velocity_source = "auto";
-  double velocity_step = 0.02;       ///< odometry's velocities are recorded in steps of this, m/s and rad/s
+  double velocity_step = 0.02;  ///< odometry's velocities are recorded in steps of this, m/s and rad/s
 
   /// Keys as the members are called. Throws ParameterError.
   static TeachSettings load(ParameterReader& reader);
@@ -29,20 +30,21 @@ struct TeachSummary {
   std::string file;
   double distance_m = 0.0;
   std::size_t local_maps = 0;
-  std::size_t features = 0;        ///< of all local maps
+  std::size_t features = 0;  ///< of all local maps
 };
 
-/// Records a path: images become local maps, velocities the path profile. Distances are those of the odometer; the
-/// first image is where the path begins, at distance 0. Not thread-safe.
+/// Records a path: images become local maps, velocities the path profile. Distances are those of the
+/// odometer; the first image is where the path begins, at distance 0. Not thread-safe.
 ///
-/// Throws MapError (the map exists already, the folder cannot be written, the disk is full) and ImageError (an image
-/// that differs from the first in size or encoding); after an ImageError the session goes on with the next image.
+/// Throws MapError (the map exists already, the folder cannot be written, the disk is full) and ImageError
+/// (an image that differs from the first in size or encoding); after an ImageError the session goes on with
+/// the next image.
 class TeachSession {
  public:
-  /// Fails early where a map at `file` could not be stored in the end. `metadata`: name and camera; the rest is filled
-  /// in from the images.
-  TeachSession(const std::string& file, const MapMetadata& metadata, bool overwrite, const TeachSettings& settings,
-               const ExtractionSettings& extraction);
+  /// Fails early where a map at `file` could not be stored in the end. `metadata`: name and camera; the rest
+  /// is filled in from the images.
+  TeachSession(const std::string& file, const MapMetadata& metadata, bool overwrite,
+               const TeachSettings& settings, const ExtractionSettings& extraction);
   ~TeachSession();
 
   /// The camera's name, where it is known from the images only; no effect after the first image.
@@ -59,7 +61,7 @@ class TeachSession {
   /// Stores the map. Throws MapError when there is nothing to repeat: no image, or no distance travelled.
   TeachSummary finish(double travelled_m);
 
-  double distance(double travelled_m) const;    ///< along the path, 0 before the first image
+  double distance(double travelled_m) const;  ///< along the path, 0 before the first image
   std::size_t localMaps() const { return local_maps_; }
   std::size_t newestFeatures() const { return newest_features_; }
 

@@ -18,28 +18,30 @@
 namespace perennial {
 
 struct BagPlayerSettings {
-  std::string bag;                 ///< file; required
-  std::string mode = "teach";      ///< "teach" a map from the bag, or "repeat" against one
-  std::string map_name;            ///< required
-  bool overwrite = false;          ///< teach: replace a map of this name
-  double start_distance_m = 0.0;   ///< repeat: where along the path the bag begins
+  std::string bag;                ///< file; required
+  std::string mode = "teach";     ///< "teach" a map from the bag, or "repeat" against one
+  std::string map_name;           ///< required
+  bool overwrite = false;         ///< teach: replace a map of this name
+  double start_distance_m = 0.0;  ///< repeat: where along the path the bag begins
   std::string image_topic = "/camera/image_raw";
   std::string odom_topic = "/odom";
-  std::string command_topic = "/cmd_vel";  ///< not played in mode repeat, where the navigator publishes its own
-  double patience_s = 30.0;        ///< real time to wait for the nodes before giving up
+  std::string command_topic =
+      "/cmd_vel";            ///< not played in mode repeat, where the navigator publishes its own
+  double patience_s = 30.0;  ///< real time to wait for the nodes before giving up
 
   static BagPlayerSettings load(ParameterReader& reader);
 };
 
-/// Plays a bag to the teach recorder or the repeat navigator as fast as they keep up, losing no image: it publishes
-/// /clock from the bag's time and goes on only while no more than a few images are unanswered on `processed`. Sends the
-/// goal before the first message and ends it after the last. One thread.
+/// Plays a bag to the teach recorder or the repeat navigator as fast as they keep up, losing no image: it
+/// publishes /clock from the bag's time and goes on only while no more than a few images are unanswered on
+/// `processed`. Sends the goal before the first message and ends it after the last. One thread.
 class BagPlayer {
  public:
   /// Throws ParameterError, and Error for a bag that cannot be read or lacks the image or odometry topic.
   BagPlayer(ros::NodeHandle nh, ros::NodeHandle private_nh);
 
-  /// Plays it all; true when the map was taught or the path repeated. Throws Error when the nodes do not answer.
+  /// Plays it all; true when the map was taught or the path repeated. Throws Error when the nodes do not
+  /// answer.
   bool run();
 
   /// Serves callbacks until `done`; false after `seconds` of real time.

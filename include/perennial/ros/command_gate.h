@@ -14,23 +14,25 @@
 
 namespace perennial {
 
-/// The only way to the robot, and the last: enforces the limits of speed, acceleration and turn rate and whatever the interlock
-/// forbids, publishes commands, and stops the robot by itself when no fresh command follows, even while the node's other
-/// callbacks are busy. Thread-safe; watches in a thread of its own, by ROS time.
+/// The only way to the robot, and the last: enforces the limits of speed, acceleration and turn rate and
+/// whatever the interlock forbids, publishes commands, and stops the robot by itself when no fresh command
+/// follows, even while the node's other callbacks are busy. Thread-safe; watches in a thread of its own, by
+/// ROS time.
 ///
-/// A stop is zero at once, without gentle braking; a hold brakes as the limits say. A person's commands pass whether or not
-/// anybody else drives.
+/// A stop is zero at once, without gentle braking; a hold brakes as the limits say. A person's commands pass
+/// whether or not anybody else drives.
 class CommandGate {
  public:
   /// A command is fresh for `timeout_s` after the stamp of the data it was computed from.
-  CommandGate(ros::NodeHandle nh, double timeout_s, const VelocityLimits& limits, const InterlockSettings& interlock);
+  CommandGate(ros::NodeHandle nh, double timeout_s, const VelocityLimits& limits,
+              const InterlockSettings& interlock);
   /// Stops the robot if it was being driven.
   ~CommandGate();
 
   /// A repeat begins: commands of strangers and people from before do not matter.
   void begin();
-  /// Sends a velocity computed from data of this stamp, as far as the limits and the interlock allow. Sends zero instead, and
-  /// returns false, when the data is stale.
+  /// Sends a velocity computed from data of this stamp, as far as the limits and the interlock allow. Sends
+  /// zero instead, and returns false, when the data is stale.
   bool drive(const Velocity& velocity, const ros::Time& stamp);
   /// Sends zero now, and goes on watching: the next fresh command drives again.
   void halt();
@@ -71,8 +73,8 @@ class CommandGate {
   MotionInterlock interlock_;
   bool driving_ = false;
   bool by_hand_ = false;
-  ros::Time stamp_;     ///< of the data that the newest command was computed from
-  Velocity velocity_;   ///< the newest one sent
+  ros::Time stamp_;    ///< of the data that the newest command was computed from
+  Velocity velocity_;  ///< the newest one sent
   geometry_msgs::Twist newest_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;

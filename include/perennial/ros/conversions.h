@@ -23,8 +23,9 @@
 #include "perennial_nav/PathProfile.h"
 #include "perennial_nav/Registration.h"
 
-/// Between the core's types and messages. Numbers keep their bits in both directions. From-message conversions throw
-/// Error for a message that makes no sense (arrays of different lengths, indices out of range, values not finite).
+/// Between the core's types and messages. Numbers keep their bits in both directions. From-message
+/// conversions throw Error for a message that makes no sense (arrays of different lengths, indices out of
+/// range, values not finite).
 namespace perennial {
 
 perennial_nav::Features toMessage(const FeatureSet& features);
@@ -43,7 +44,8 @@ perennial_nav::PathProfile toMessage(const PathProfile& profile);
 PathProfile fromMessage(const perennial_nav::PathProfile& message);
 
 /// Metadata as far as the navigator needs it.
-MapMetadata metadataFromMessage(const perennial_nav::BeginTraversalResponse& message, const std::string& name);
+MapMetadata metadataFromMessage(const perennial_nav::BeginTraversalResponse& message,
+                                const std::string& name);
 
 geometry_msgs::Twist toMessage(const Velocity& velocity);
 Velocity fromMessage(const geometry_msgs::Twist& message);

@@ -7,8 +7,8 @@
 
 namespace perennial {
 
-/// Images, in order, that wait until the odometry and the local map for their stamp have come. When it is full the
-/// oldest is dropped; capacity 0 keeps all, as a bag wants it.
+/// Images, in order, that wait until the odometry and the local map for their stamp have come. When it is
+/// full the oldest is dropped; capacity 0 keeps all, as a bag wants it.
 class ImageQueue {
  public:
   explicit ImageQueue(std::size_t capacity) : capacity_(capacity) {}

@@ -12,12 +12,14 @@
 
 namespace perennial {
 
-/// Offers a repeat's settings to dynamic_reconfigure. Registration and steering change at once, also while the robot drives;
-/// extraction only between goals, since a run keeps the settings its map was taught with.
+/// Offers a repeat's settings to dynamic_reconfigure. Registration and steering change at once, also while
+/// the robot drives; extraction only between goals, since a run keeps the settings its map was taught with.
 class LiveSettings {
  public:
-  /// `settings` is changed in place and must outlive this; `session` gives the running session, nullptr when there is none.
-  LiveSettings(const ros::NodeHandle& private_nh, RepeatSettings& settings, std::function<RepeatSession*()> session);
+  /// `settings` is changed in place and must outlive this; `session` gives the running session, nullptr when
+  /// there is none.
+  LiveSettings(const ros::NodeHandle& private_nh, RepeatSettings& settings,
+               std::function<RepeatSession*()> session);
 
  private:
   RepeatSettings& settings_;

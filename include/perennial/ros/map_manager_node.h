@@ -21,17 +21,17 @@ namespace perennial {
 
 /// Parameters of the node itself; groups: management, and one named like the strategy for its own parameters.
 struct MapManagerNodeSettings {
-  std::string map_folder;          ///< where maps are stored; required
+  std::string map_folder;           ///< where maps are stored; required
   std::string strategy = "static";  ///< name of the plugin
 
   static MapManagerNodeSettings load(ParameterReader& reader);
 };
 
-/// Owns the map file: opens a map for a traversal (service begin_traversal), publishes local_maps ahead of the robot, learns
-/// from registration, and stores or forgets what was learned (service end_traversal).
+/// Owns the map file: opens a map for a traversal (service begin_traversal), publishes local_maps ahead of
+/// the robot, learns from registration, and stores or forgets what was learned (service end_traversal).
 ///
-/// Two threads: services are served by one of their own, because end_traversal waits for the registrations that are still
-/// on their way; everything else runs on the global queue. One mutex guards all state.
+/// Two threads: services are served by one of their own, because end_traversal waits for the registrations
+/// that are still on their way; everything else runs on the global queue. One mutex guards all state.
 class MapManagerNode {
  public:
   /// Throws ParameterError, among others for a strategy that does not exist.
@@ -39,12 +39,14 @@ class MapManagerNode {
   ~MapManagerNode();
 
  private:
-  bool onBegin(perennial_nav::BeginTraversalRequest& request, perennial_nav::BeginTraversalResponse& response);
+  bool onBegin(perennial_nav::BeginTraversalRequest& request,
+               perennial_nav::BeginTraversalResponse& response);
   bool onEnd(perennial_nav::EndTraversalRequest& request, perennial_nav::EndTraversalResponse& response);
   void onRegistration(const perennial_nav::RegistrationConstPtr& message);
   void onSubscriber(const ros::SingleSubscriberPublisher& subscriber);
 
-  void open(const perennial_nav::BeginTraversalRequest& request, perennial_nav::BeginTraversalResponse& response);
+  void open(const perennial_nav::BeginTraversalRequest& request,
+            perennial_nav::BeginTraversalResponse& response);
   void learn(const perennial_nav::Registration& message);
   void publishDue(double distance_m);
   perennial_nav::LocalMap message(std::uint32_t index) const;
@@ -60,12 +62,12 @@ class MapManagerNode {
   std::mutex mutex_;
   std::condition_variable registration_came_;
   std::unique_ptr<MapManager> manager_;
-  std::uint32_t traversal_ = 0;         ///< identifies the open traversal towards the navigator
-  std::uint32_t registrations_ = 0;     ///< received in it
-  std::uint32_t window_begin_ = 0;      ///< local maps published around the robot, for late subscribers
+  std::uint32_t traversal_ = 0;      ///< identifies the open traversal towards the navigator
+  std::uint32_t registrations_ = 0;  ///< received in it
+  std::uint32_t window_begin_ = 0;   ///< local maps published around the robot, for late subscribers
   std::uint32_t window_end_ = 0;
   ros::Time stamp_;
-  std::string problem_;                 ///< why this traversal can teach nothing; empty: it can
+  std::string problem_;  ///< why this traversal can teach nothing; empty: it can
 
   ros::Publisher map_publisher_;
   ros::Subscriber registration_subscriber_;

@@ -8,8 +8,8 @@
 namespace perennial {
 
 /// Watches the ROS master from a thread of its own, since asking a master that is gone may take long. Without
-/// the master nobody new can stop a robot, nor see that it drives; a master that was restarted does not know the nodes that
-/// were there before. Thread-safe; measured with the steady clock in simulated time too.
+/// the master nobody new can stop a robot, nor see that it drives; a master that was restarted does not know
+/// the nodes that were there before. Thread-safe; measured with the steady clock in simulated time too.
 class MasterMonitor {
  public:
   explicit MasterMonitor(std::chrono::milliseconds timeout);
@@ -19,7 +19,8 @@ class MasterMonitor {
 
   /// Whether the master answered within the time-out.
   bool alive() const;
-  /// Whether the master answers, but was restarted and knows nothing of this node: nobody can find it any more.
+  /// Whether the master answers, but was restarted and knows nothing of this node: nobody can find it any
+  /// more.
   bool forgotten() const;
 
  private:
@@ -29,7 +30,7 @@ class MasterMonitor {
   mutable std::mutex mutex_;
   std::condition_variable ending_;
   bool end_ = false;
-  bool known_ = false;      ///< the master has known this node
+  bool known_ = false;  ///< the master has known this node
   bool forgotten_ = false;
   std::chrono::steady_clock::time_point last_answer_ = std::chrono::steady_clock::now();
   std::thread thread_;

@@ -14,8 +14,8 @@
 
 namespace perennial {
 
-/// Everything that the navigator tells others: registration, navigation_state (latched), matches (drawn only while somebody
-/// subscribes), processed, diagnostics.
+/// Everything that the navigator tells others: registration, navigation_state (latched), matches (drawn only
+/// while somebody subscribes), processed, diagnostics.
 class NavigationReporter {
  public:
   NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh);

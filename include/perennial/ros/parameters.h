@@ -9,10 +9,10 @@
 
 namespace perennial {
 
-/// The parameters directly in the namespace of `nh`, for a ParameterReader. Groups (nested namespaces) are left out; one
-/// that is not in `known_groups` is an error, so that a misspelt group is found, except where `known_groups` holds "*".
-/// What libraries keep in a node's private namespace (image_transport, diagnostic_updater) is left out too.
-/// Throws ParameterError for values of a type that no parameter has.
+/// The parameters directly in the namespace of `nh`, for a ParameterReader. Groups (nested namespaces) are
+/// left out; one that is not in `known_groups` is an error, so that a misspelt group is found, except where
+/// `known_groups` holds "*". What libraries keep in a node's private namespace (image_transport,
+/// diagnostic_updater) is left out too. Throws ParameterError for values of a type that no parameter has.
 Parameters readParameters(const ros::NodeHandle& nh, const std::vector<std::string>& known_groups = {});
 
 /// As it stands in YAML: "true", "5", "0.05", "[1, 2]".

@@ -9,8 +9,8 @@
 #include "perennial_nav/RegistrationConfig.h"
 #include "perennial_nav/SteeringConfig.h"
 
-/// Between the settings of the core and dynamic_reconfigure. A node loads its settings strictly, then puts them into
-/// the configuration that dynamic_reconfigure announces.
+/// Between the settings of the core and dynamic_reconfigure. A node loads its settings strictly, then puts
+/// them into the configuration that dynamic_reconfigure announces.
 namespace perennial {
 
 /// The level with which dynamic_reconfigure calls back at start-up.

@@ -27,11 +27,12 @@
 
 namespace perennial {
 
-/// Serves the action `repeat`: drives a taught path by registering images against the local maps that map_manager sends.
+/// Serves the action `repeat`: drives a taught path by registering images against the local maps that
+/// map_manager sends.
 ///
-/// Subscribes image, camera_info, odom, local_maps, and what SafetyInputs lists; publishes cmd_vel and what NavigationReporter
-/// lists. Callbacks run on the global queue and must be served by one thread; the command gate and the safety inputs have one
-/// of their own.
+/// Subscribes image, camera_info, odom, local_maps, and what SafetyInputs lists; publishes cmd_vel and what
+/// NavigationReporter lists. Callbacks run on the global queue and must be served by one thread; the command
+/// gate and the safety inputs have one of their own.
 class RepeatNavigator {
  public:
   /// Throws ParameterError.
@@ -63,8 +64,8 @@ class RepeatNavigator {
   /// Ends the run: stops the robot and, unless it has been ended already, forgets the open traversal.
   perennial_nav::RepeatResult endRun(bool success, const std::string& reason);
 
-  /// Whether it was still on its way when the goal came: the robot may have been carried elsewhere meanwhile. Bags have no such
-  /// thing.
+  /// Whether it was still on its way when the goal came: the robot may have been carried elsewhere meanwhile.
+  /// Bags have no such thing.
   bool isFromBefore(const std_msgs::Header& header) const;
   /// What navigation waits for, as the supervisor wants it.
   std::string missing() const;

@@ -11,12 +11,14 @@
 
 namespace perennial {
 
-/// Every parameter of the navigator: those of the node itself and its groups, as in config/repeat_navigator.yaml.
+/// Every parameter of the navigator: those of the node itself and its groups, as in
+/// config/repeat_navigator.yaml.
 struct RepeatNavigatorSettings {
   bool every_image = false;       ///< register every image, in order (bags); else skip to the newest (robots)
   double sensor_timeout_s = 0.5;  ///< images or odometry older than this do not move the robot
   double give_up_s = 10.0;        ///< sensors or local maps missing for so long: the goal fails
-  double stall_timeout_s = 5.0;   ///< driving for so long without the odometry moving: the goal fails; 0: never
+  double stall_timeout_s =
+      5.0;  ///< driving for so long without the odometry moving: the goal fails; 0: never
 
   RepeatSettings repeat;          ///< groups extraction, registration, steering, along_path
   OdometerSettings odometer;      ///< group odometer

@@ -16,9 +16,9 @@ namespace perennial {
 
 /// What people and sensors say about moving, handed to the command gate by the gate's own thread.
 ///
-/// Always: topic e_stop (std_msgs/Bool, latched by whoever sends it), services e_stop (std_srvs/SetBool) and resume
-/// (std_srvs/Trigger), topic teleop_vel (geometry_msgs/Twist). As the settings say: joy or heartbeat (std_msgs/Empty);
-/// obstacle_range, obstacle_scan, obstacle. The gate must outlive it.
+/// Always: topic e_stop (std_msgs/Bool, latched by whoever sends it), services e_stop (std_srvs/SetBool) and
+/// resume (std_srvs/Trigger), topic teleop_vel (geometry_msgs/Twist). As the settings say: joy or heartbeat
+/// (std_msgs/Empty); obstacle_range, obstacle_scan, obstacle. The gate must outlive it.
 class SafetyInputs {
  public:
   SafetyInputs(CommandGate& gate, const InterlockSettings& settings);

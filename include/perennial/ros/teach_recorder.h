@@ -25,18 +25,18 @@ namespace perennial {
 
 /// Parameters of the node itself; groups: extraction, teaching, odometer.
 struct TeachRecorderSettings {
-  std::string map_folder;      ///< where maps are stored; required
-  std::string camera = "";     ///< name stored with the map; empty: the images' frame
-  bool every_image = false;    ///< never drop an image, however long its odometry takes to come (bags)
+  std::string map_folder;    ///< where maps are stored; required
+  std::string camera = "";   ///< name stored with the map; empty: the images' frame
+  bool every_image = false;  ///< never drop an image, however long its odometry takes to come (bags)
 
   static TeachRecorderSettings load(ParameterReader& reader);
 };
 
-/// Serves the action `teach`: while a goal is active, images, odometry and commands become a map. Preempting the goal,
-/// or stopping the node, finishes the map.
+/// Serves the action `teach`: while a goal is active, images, odometry and commands become a map. Preempting
+/// the goal, or stopping the node, finishes the map.
 ///
-/// Subscribes image, odom, cmd_vel; publishes taught_path, processed, diagnostics. All callbacks run on the global queue and must
-/// be served by one thread.
+/// Subscribes image, odom, cmd_vel; publishes taught_path, processed, diagnostics. All callbacks run on the
+/// global queue and must be served by one thread.
 class TeachRecorder {
  public:
   /// Throws ParameterError.

@@ -9,9 +9,9 @@
 
 namespace perennial {
 
-/// The navigator's side of the conversation with map_manager: opens and ends traversals and counts the registrations
-/// that the manager has to wait for. Calls block until the manager answers. Throws MapError with the manager's reason,
-/// or when no manager answers.
+/// The navigator's side of the conversation with map_manager: opens and ends traversals and counts the
+/// registrations that the manager has to wait for. Calls block until the manager answers. Throws MapError
+/// with the manager's reason, or when no manager answers.
 class TraversalClient {
  public:
   explicit TraversalClient(ros::NodeHandle nh);
@@ -22,8 +22,8 @@ class TraversalClient {
 
   void countRegistration() { ++registrations_; }
   bool open() const { return open_; }
-  /// Whether the manager that opened the traversal is still there: its connection, kept open, tells at once. True while no
-  /// traversal is open.
+  /// Whether the manager that opened the traversal is still there: its connection, kept open, tells at once.
+  /// True while no traversal is open.
   bool managerAlive() const { return !open_ || end_.isValid(); }
   /// Identifies the open traversal; local maps of any other one are stale.
   std::uint32_t id() const { return id_; }

@@ -202,8 +202,8 @@ TEST_P(StrategyConformance, keepsInvariantsOverAThousandUpdates) {
 }
 
 TEST_P(StrategyConformance, keepsInvariantsWhateverHappens) {
-  // A thousand events drawn at random for each of two seeds: views of any size, empty ones, such as show another
-  // place, wrong displacements, time that stands still, jumps and goes back.
+  // A thousand events drawn at random for each of two seeds: views of any size, empty ones, such as show
+  // another place, wrong displacements, time that stands still, jumps and goes back.
   for (unsigned seed = 21; seed < 23; ++seed) {
     const auto strategy = create();
     SyntheticPlace place(seed);
@@ -215,7 +215,8 @@ TEST_P(StrategyConformance, keepsInvariantsWhateverHappens) {
       SCOPED_TRACE("seed " + std::to_string(seed) + ", event " + std::to_string(event));
       const double kind = place.uniform(0.0, 1.0);
       stamp_s += kind < 0.1 ? 0.0 : kind < 0.2 ? place.uniform(-1e7, 1e7) : place.uniform(60.0, 57600.0);
-      const auto seen = static_cast<std::size_t>(place.uniform(0.0, 1.0) < 0.1 ? 0.0 : place.uniform(1.0, kSeen));
+      const auto seen =
+          static_cast<std::size_t>(place.uniform(0.0, 1.0) < 0.1 ? 0.0 : place.uniform(1.0, kSeen));
       const double dx = place.uniform(-60.0, 60.0);
       SyntheticPlace& visited = kind > 0.9 ? elsewhere : place;
       ASSERT_NO_FATAL_FAILURE(expectValidAlternatives(*strategy, map, stamp_s));

@@ -44,24 +44,28 @@ cv::Mat objectTexture(const cv::Size& size, cv::RNG& random) {
 
 cv::Mat covered(const cv::Mat& image, double share, cv::RNG& random) {
   const double side = std::sqrt(share);
-  const cv::Size size(static_cast<int>(std::lround(side * image.cols)), static_cast<int>(std::lround(side * image.rows)));
+  const cv::Size size(static_cast<int>(std::lround(side * image.cols)),
+                      static_cast<int>(std::lround(side * image.rows)));
   cv::Mat result = image.clone();
   if (size.area() > 0) {
-    const cv::Point corner(random.uniform(0, image.cols - size.width + 1), random.uniform(0, image.rows - size.height + 1));
+    const cv::Point corner(random.uniform(0, image.cols - size.width + 1),
+                           random.uniform(0, image.rows - size.height + 1));
     objectTexture(size, random).copyTo(result(cv::Rect(corner, size)));
   }
   return result;
 }
 
 cv::Mat rolled(const cv::Mat& image, double degrees) {
-  const cv::Point2f centre(0.5F * static_cast<float>(image.cols - 1), 0.5F * static_cast<float>(image.rows - 1));
+  const cv::Point2f centre(0.5F * static_cast<float>(image.cols - 1),
+                           0.5F * static_cast<float>(image.rows - 1));
   cv::Mat result;
   cv::warpAffine(image, result, cv::getRotationMatrix2D(centre, degrees, 1.0), image.size(), cv::INTER_LINEAR,
                  cv::BORDER_REPLICATE);
   return result;
 }
 
-/// The camera looks up, so the scene moves down; what comes into view at the top is not known and shows nothing.
+/// The camera looks up, so the scene moves down; what comes into view at the top is not known and shows
+/// nothing.
 cv::Mat pitched(const cv::Mat& image, double degrees) {
   const double down_px = kFocalShare * image.cols * std::tan(degrees * CV_PI / 180.0);
   const cv::Matx23d move(1.0, 0.0, 0.0, 0.0, 1.0, down_px);
@@ -97,8 +101,9 @@ Disturbance Disturbance::parse(const std::string& text) {
       return {known.kind, value};
     }
   }
-  throw ParameterError("'" + text +
-                       "' is no disturbance; those are cover=0..1, blur=PX, roll=DEGREES, pitch=DEGREES, saturate=0..1");
+  throw ParameterError(
+      "'" + text +
+      "' is no disturbance; those are cover=0..1, blur=PX, roll=DEGREES, pitch=DEGREES, saturate=0..1");
 }
 
 cv::Mat disturbed(const cv::Mat& image, const Disturbance& disturbance, std::uint64_t seed) {

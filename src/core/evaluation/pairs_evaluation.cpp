@@ -33,9 +33,11 @@ class PlaceEvaluator {
     const cv::Mat image = dataset_.readImage(row);
     FeatureSet map = extract(image);
     const FeatureSet view =
-        disturbance_ ? extract(disturbed(image, *disturbance_, static_cast<std::uint64_t>(extractions_))) : map;
+        disturbance_ ? extract(disturbed(image, *disturbance_, static_cast<std::uint64_t>(extractions_)))
+                     : map;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      registration_ms_ += timed([&] { registration_->registerInto(features_[i], view, workspace_, result_); });
+      registration_ms_ +=
+          timed([&] { registration_->registerInto(features_[i], view, workspace_, result_); });
       ++registrations_;
       records.push_back({rows_[i], row, features_[i].size(), result_.displacement_px, result_.inliers,
                          result_.matches, result_.confidence, result_.uncertainty_px});
@@ -121,7 +123,8 @@ PairsSummary summarisePairs(const std::vector<PairRecord>& records) {
 }
 
 double answeredAtPrecision(const std::vector<PairRecord>& records, double precision, double within_px) {
-  std::map<double, std::pair<std::size_t, std::size_t>> by_confidence;  // descending: keys negated; answers, right ones
+  std::map<double, std::pair<std::size_t, std::size_t>>
+      by_confidence;  // descending: keys negated; answers, right ones
   for (const PairRecord& record : records) {
     if (const auto error = record.error()) {
       auto& [answers, right] = by_confidence[-record.confidence];

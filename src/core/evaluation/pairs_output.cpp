@@ -42,15 +42,16 @@ std::string jsonText(const std::string& text) {
 
 std::string errorsCsv(const std::vector<PairRecord>& records) {
   std::string text =
-      "traversal,stamp,distance_m,displacement_px,ground_truth_px,error_px,inliers,matches,map_features,map_traversal,"
+      "traversal,stamp,distance_m,displacement_px,ground_truth_px,error_px,inliers,matches,map_features,map_"
+      "traversal,"
       "confidence,uncertainty_px\n";
   for (const PairRecord& record : records) {
     text += csvField(record.view.traversal) + "," + formatUtc(record.view.stamp_s) + "," +
-            number(record.view.distance_m) + "," + exact(record.displacement_px) + "," + exact(record.groundTruth()) +
-            "," + exact(record.error()) + "," + std::to_string(record.inliers) + "," +
-            std::to_string(record.matches) + "," + std::to_string(record.map_features) + "," +
-            csvField(record.map.traversal) + "," + exact(record.confidence) + "," + exact(record.uncertainty_px) +
-            "\n";
+            number(record.view.distance_m) + "," + exact(record.displacement_px) + "," +
+            exact(record.groundTruth()) + "," + exact(record.error()) + "," + std::to_string(record.inliers) +
+            "," + std::to_string(record.matches) + "," + std::to_string(record.map_features) + "," +
+            csvField(record.map.traversal) + "," + exact(record.confidence) + "," +
+            exact(record.uncertainty_px) + "\n";
   }
   return text;
 }
@@ -66,15 +67,15 @@ std::string summaryJson(const std::vector<std::pair<std::string, std::string>>& 
   for (const auto& [threshold, share] : summary.within_px) {
     within += (within.empty() ? "" : ", ") + jsonText(std::to_string(threshold)) + ": " + number(share);
   }
-  return "{\n  \"strategy\": \"none: all pairs\",\n  \"settings\": {" + assignments + "},\n" +               //
-         "  \"version\": " + jsonText(PERENNIAL_VERSION) + ",\n" +                                          //
-         "  \"registrations\": " + std::to_string(summary.registrations) + ",\n" +                          //
-         "  \"answered\": " + number(summary.answered) + ",\n" +                                            //
-         "  \"within_px\": {" + within + "},\n" +                                                           //
-         "  \"answered_at_99_precision\": " + number(summary.answered_at_99_precision) + ",\n" +            //
-         "  \"mean_error_px\": " + number(summary.mean_error_px) + ",\n" +                                  //
-         "  \"median_error_px\": " + number(summary.median_error_px) + ",\n" +                              //
-         "  \"ms_per_registration\": " + number(evaluation.ms_per_registration) + ",\n" +                   //
+  return "{\n  \"strategy\": \"none: all pairs\",\n  \"settings\": {" + assignments + "},\n" +    //
+         "  \"version\": " + jsonText(PERENNIAL_VERSION) + ",\n" +                                //
+         "  \"registrations\": " + std::to_string(summary.registrations) + ",\n" +                //
+         "  \"answered\": " + number(summary.answered) + ",\n" +                                  //
+         "  \"within_px\": {" + within + "},\n" +                                                 //
+         "  \"answered_at_99_precision\": " + number(summary.answered_at_99_precision) + ",\n" +  //
+         "  \"mean_error_px\": " + number(summary.mean_error_px) + ",\n" +                        //
+         "  \"median_error_px\": " + number(summary.median_error_px) + ",\n" +                    //
+         "  \"ms_per_registration\": " + number(evaluation.ms_per_registration) + ",\n" +         //
          "  \"ms_per_extraction\": " + number(evaluation.ms_per_extraction) + "\n}\n";
 }
 

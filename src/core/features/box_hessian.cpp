@@ -24,11 +24,15 @@ struct Response {
   }
   /// Dxy from the image's rows.
   float dxy(const FilterRows& rows, int x) const noexcept {
-    const auto column = [&](int at) { return (rows.xy[1][at] - rows.xy[0][at]) - (rows.xy[3][at] - rows.xy[2][at]); };
+    const auto column = [&](int at) {
+      return (rows.xy[1][at] - rows.xy[0][at]) - (rows.xy[3][at] - rows.xy[2][at]);
+    };
     return signedSum((column(x) - column(x - lobe)) - (column(x + lobe + 1) - column(x + 1))) * norm;
   }
 
-  static float determinant(float dxx, float dyy, float dxy) noexcept { return dxx * dyy - kMixedWeight * dxy * dxy; }
+  static float determinant(float dxx, float dyy, float dxy) noexcept {
+    return dxx * dyy - kMixedWeight * dxy * dxy;
+  }
 
   float operator()(const std::uint32_t* xx, const std::uint32_t* yy, const std::uint32_t* xy) const noexcept {
     return determinant(dxx(xx), dyy(yy), dxy(xy));
@@ -58,7 +62,8 @@ FilterRows::FilterRows(const IntegralImage& integral, const BoxFilter& filter, i
   xy[3] = integral.row(y + lobe + 1);
 }
 
-void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept {
+void differenceColumnsXxYy(const FilterRows& rows, int begin, int end,
+                           ColumnDifferences& differences) noexcept {
   // Local pointers and one loop per derivative: so the compiler sees that nothing overlaps, and vectorises.
   std::uint32_t* const __restrict xx = differences.xx.data();
   std::uint32_t* const __restrict yy = differences.yy.data();
@@ -98,8 +103,8 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
   }
 }
 
-int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter, int begin,
-                    int count, float threshold, float* __restrict responses) noexcept {
+int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
+                    int begin, int count, float threshold, float* __restrict responses) noexcept {
   const Response response(filter);
   const std::uint32_t* const xx = differences.xx.data() + begin;
   const std::uint32_t* const yy = differences.yy.data() + begin;
@@ -108,7 +113,8 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
     const float dxx = response.dxx(xx + i);
     const float dyy = response.dyy(yy + i);
     const bool may_reach = dxx * dyy >= threshold;
-    responses[i] = may_reach ? Response::determinant(dxx, dyy, response.dxy(rows, begin + i)) : kBelowThreshold;
+    responses[i] =
+        may_reach ? Response::determinant(dxx, dyy, response.dxy(rows, begin + i)) : kBelowThreshold;
     computed += may_reach ? 1 : 0;
   }
   return computed;
@@ -123,7 +129,8 @@ float hessianAt(const IntegralImage& integral, const BoxFilter& filter, int x, i
   };
   const int half = filter.half();
   const int half_lobe = filter.lobe / 2;
-  const std::uint32_t sum_xx = (xx(x + half + 1) - xx(x - half)) - 3U * (xx(x + half_lobe + 1) - xx(x - half_lobe));
+  const std::uint32_t sum_xx =
+      (xx(x + half + 1) - xx(x - half)) - 3U * (xx(x + half_lobe + 1) - xx(x - half_lobe));
   const std::uint32_t sum_yy = yy(x + filter.lobe) - yy(x + 1 - filter.lobe);
   return Response::determinant(signedSum(sum_xx) * response.norm, signedSum(sum_yy) * response.norm,
                                response.dxy(rows, x));

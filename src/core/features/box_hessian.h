@@ -56,9 +56,11 @@ struct FilterRows {
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept;
 
 /// The same without `xy`.
-void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept;
+void differenceColumnsXxYy(const FilterRows& rows, int begin, int end,
+                           ColumnDifferences& differences) noexcept;
 
-/// Stands for a response that was not computed because it cannot reach the threshold: less than every threshold.
+/// Stands for a response that was not computed because it cannot reach the threshold: less than every
+/// threshold.
 constexpr float kBelowThreshold = -std::numeric_limits<float>::infinity();
 
 /// Responses det = Dxx Dyy - (0.9 Dxy)^2 at x = begin, begin + step, ..., `count` of them, with the
@@ -67,11 +69,12 @@ constexpr float kBelowThreshold = -std::numeric_limits<float>::infinity();
 void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int step, int count,
                 float* responses) noexcept;
 
-/// The same with a step of 1 where a response may reach `threshold`, kBelowThreshold where it cannot because Dxx Dyy does
-/// not: there Dxy, which can only lower it, is never computed. It is taken from `rows`; `differences` need not have it. Which
-/// responses below the threshold are computed all the same is left open. Returns how many were computed.
-int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter, int begin,
-                    int count, float threshold, float* responses) noexcept;
+/// The same with a step of 1 where a response may reach `threshold`, kBelowThreshold where it cannot because
+/// Dxx Dyy does not: there Dxy, which can only lower it, is never computed. It is taken from `rows`;
+/// `differences` need not have it. Which responses below the threshold are computed all the same is left
+/// open. Returns how many were computed.
+int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
+                    int begin, int count, float threshold, float* responses) noexcept;
 
 /// One response: that of hessianRow() at pixel (x, y), where the filter must lie within the image.
 float hessianAt(const IntegralImage& integral, const BoxFilter& filter, int x, int y) noexcept;

@@ -21,8 +21,9 @@ constexpr int kBriefPatch = 48;
 
 /// The sampling pattern; descriptors in maps depend on it, so it must never change.
 ///
-/// Isotropic Gaussian with sigma = S / 5 = 9.6 px about the keypoint, arrangement G II of Calonder et al. (ECCV
-/// 2010, section 3.2). How it was made, in integers, so that it can be made again anywhere (a test does):
+/// Isotropic Gaussian with sigma = S / 5 = 9.6 px about the keypoint, arrangement G II of Calonder et al.
+/// (ECCV 2010, section 3.2). How it was made, in integers, so that it can be made again anywhere (a test
+/// does):
 ///
 ///  - random 16-bit numbers: the upper 16 bits of s after s = 6364136223846793005 s + 1442695040888963407
 ///    (mod 2^64, s = 0 before the first step);

@@ -40,8 +40,9 @@ ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
 }
 
 std::string ExtractionSettings::describe() const {
-  std::string text = "surf-brief/1 features=" + std::to_string(features) + " octaves=" + std::to_string(octaves) +
-                     " layers=" + std::to_string(layers) + " min_response=" + exactText(min_response);
+  std::string text = "surf-brief/1 features=" + std::to_string(features) +
+                     " octaves=" + std::to_string(octaves) + " layers=" + std::to_string(layers) +
+                     " min_response=" + exactText(min_response);
   if (half_resolution) {
     text += " half_resolution=1";
   }

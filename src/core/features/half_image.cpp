@@ -11,7 +11,8 @@ void halveImage(const cv::Mat& image, cv::Mat& half) {
     const std::uint8_t* const lower = image.ptr<std::uint8_t>(2 * y + 1);
     std::uint8_t* const __restrict row = half.ptr<std::uint8_t>(y);
     for (int x = 0; x < half.cols; ++x) {
-      row[x] = static_cast<std::uint8_t>((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) / 4);
+      row[x] = static_cast<std::uint8_t>(
+          (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) / 4);
     }
   }
 }

@@ -7,7 +7,8 @@
 namespace perennial {
 namespace {
 
-/// Where more than half of a row has to be computed anyway, computing so many rows whole is cheaper than looking first.
+/// Where more than half of a row has to be computed anyway, computing so many rows whole is cheaper than
+/// looking first.
 constexpr int kDenseRows = 15;
 
 /// Samples 0, step, 2 step, ... that lie before `length`.
@@ -122,8 +123,8 @@ void HessianPyramid::filterRow(const IntegralImage& integral, ResponseLayer& lay
   }
 }
 
-void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x, int count,
-                                  float* responses) {
+void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x,
+                                  int count, float* responses) {
   const int begin = first_x - layer.filter.half();
   const int end = first_x + count + layer.filter.half() + 1;
   const Kernels& use = kernels();
@@ -135,7 +136,8 @@ void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& 
     return;
   }
   use.difference_columns_xx_yy(rows, begin, end, differences_);
-  const int computed = use.hessian_row_above(rows, differences_, layer.filter, first_x, count, threshold_, responses);
+  const int computed =
+      use.hessian_row_above(rows, differences_, layer.filter, first_x, count, threshold_, responses);
   if (2 * computed > count) {
     layer.dense_rows = kDenseRows;
   }

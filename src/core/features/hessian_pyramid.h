@@ -19,8 +19,10 @@ struct ResponseLayer {
   int begin = 0;
   int columns_end = 0;
   int rows_end = 0;
-  int dense_rows = 0;  ///< rows to come in which every response is computed, because most were in the row before
-  int rows_held = 0;   ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
+  int dense_rows =
+      0;  ///< rows to come in which every response is computed, because most were in the row before
+  int rows_held =
+      0;  ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
   std::vector<float> responses;
 
   /// Row j, which must be among those held.
@@ -47,10 +49,11 @@ class HessianPyramid {
   /// Memory is kept and used again for images of the same size.
   void compute(const IntegralImage& integral);
 
-  /// The same, handing out rows as they come: visit(octave, j) is called when rows j - 1 .. j + 1 of all layers of the
-  /// octave are there, octave by octave, for all j but an octave's first and last. Of octave 0 only a few rows are held:
-  /// its responses never leave the processor's cache, which takes half the time of writing and reading them.
-  /// Responses that are known to stay below `threshold` may be kBelowThreshold instead; see responseAt().
+  /// The same, handing out rows as they come: visit(octave, j) is called when rows j - 1 .. j + 1 of all
+  /// layers of the octave are there, octave by octave, for all j but an octave's first and last. Of octave 0
+  /// only a few rows are held: its responses never leave the processor's cache, which takes half the time of
+  /// writing and reading them. Responses that are known to stay below `threshold` may be kBelowThreshold
+  /// instead; see responseAt().
   template <class Visit>
   void stream(const IntegralImage& integral, float threshold, Visit visit) {
     fit(integral, kRowsStreamed);
@@ -72,7 +75,8 @@ class HessianPyramid {
   /// The response at a sample of a row that is held, also where it was left out.
   float responseAt(const IntegralImage& integral, const ResponseLayer& layer, int i, int j) const {
     const float response = layer.row(j)[i];
-    return response == kBelowThreshold ? hessianAt(integral, layer.filter, i * layer.step, j * layer.step) : response;
+    return response == kBelowThreshold ? hessianAt(integral, layer.filter, i * layer.step, j * layer.step)
+                                       : response;
   }
 
   int octaves() const { return octaves_; }
@@ -98,7 +102,8 @@ class HessianPyramid {
   void computeOctave(const IntegralImage& integral, int octave, bool copied);
   void filterRow(const IntegralImage& integral, ResponseLayer& layer, int j);
   /// Responses of pixels first_x .. first_x + count - 1 of an image row.
-  void filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x, int count, float* responses);
+  void filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x, int count,
+                    float* responses);
 
   int octaves_;
   int layers_;

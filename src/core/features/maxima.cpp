@@ -94,10 +94,12 @@ struct Quadratic {
 
 }  // namespace
 
-int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) noexcept {
+int nextPeak(const float* up, const float* here, const float* down, int begin, int end,
+             float threshold) noexcept {
   for (int i = begin; i < end; ++i) {
     const float value = here[i];
-    if (value >= threshold && value >= here[i - 1] && value >= up[i] && value > here[i + 1] && value > down[i]) {
+    if (value >= threshold && value >= here[i - 1] && value >= up[i] && value > here[i + 1] &&
+        value > down[i]) {
       return i;
     }
   }
@@ -123,7 +125,8 @@ void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float thr
   }
 }
 
-std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral, const Maximum& maximum) {
+std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral,
+                               const Maximum& maximum) {
   const auto [dx, dy, ds] = Quadratic(pyramid, integral, maximum).extremum();
   if (!(std::abs(dx) < 1.0 && std::abs(dy) < 1.0 && std::abs(ds) < 1.0)) {
     return std::nullopt;

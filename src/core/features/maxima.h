@@ -17,10 +17,11 @@ struct Maximum {
   float response = 0.0F;
 };
 
-/// The first of the samples begin..end-1 of a row that reaches the threshold, is not less than its left and upper
-/// neighbours and greater than its right and lower ones: few do, so that most of a row is passed over. `end` when there
-/// is none.
-int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) noexcept;
+/// The first of the samples begin..end-1 of a row that reaches the threshold, is not less than its left and
+/// upper neighbours and greater than its right and lower ones: few do, so that most of a row is passed over.
+/// `end` when there is none.
+int nextPeak(const float* up, const float* here, const float* down, int begin, int end,
+             float threshold) noexcept;
 
 /// Appends every maximum with response >= `threshold` (which must be positive), octave by octave.
 ///
@@ -30,11 +31,13 @@ int nextPeak(const float* up, const float* here, const float* down, int begin, i
 void findMaxima(const HessianPyramid& pyramid, float threshold, std::vector<Maximum>& maxima);
 
 /// The same for row `j` of one octave, in all layers.
-void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float threshold, std::vector<Maximum>& maxima);
+void findMaximaInRow(const HessianPyramid& pyramid, int octave, int j, float threshold,
+                     std::vector<Maximum>& maxima);
 
 /// Position and scale of the extremum of the quadratic through the 27 responses around a maximum (Brown and
 /// Lowe, BMVC 2002). None when it lies a whole sample or more away in any direction, or when there is none:
 /// then the responses are no blob. The keypoint keeps the sample's response.
-std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral, const Maximum& maximum);
+std::optional<Keypoint> refine(const HessianPyramid& pyramid, const IntegralImage& integral,
+                               const Maximum& maximum);
 
 }  // namespace perennial

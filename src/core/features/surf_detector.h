@@ -17,14 +17,14 @@ namespace perennial {
 /// The result is, by definition: of all maxima of the scale space with a response of at least `min_response`,
 /// refined, whose patch fits the image, without those that a stronger one of another octave makes duplicates,
 /// the strongest `features`; by falling response, then y, x and scale. Nothing of an earlier image enters it.
-/// With buckets, instead of the strongest `features`: those of the best rank within their bucket, of equal rank
-/// the strongest.
+/// With buckets, instead of the strongest `features`: those of the best rank within their bucket, of equal
+/// rank the strongest.
 ///
 /// What adapts from image to image is where the search starts: at the response that would have given the
-/// image before a quarter more candidates than it needed. When that finds too few, the image is searched again with lower
-/// thresholds, down to `min_response`. A candidate's fate depends on stronger
-/// candidates only, so every threshold that finds enough gives the same result. One instance serves one
-/// thread. With buckets every candidate counts, so that the search starts at `min_response`.
+/// image before a quarter more candidates than it needed. When that finds too few, the image is searched
+/// again with lower thresholds, down to `min_response`. A candidate's fate depends on stronger candidates
+/// only, so every threshold that finds enough gives the same result. One instance serves one thread. With
+/// buckets every candidate counts, so that the search starts at `min_response`.
 class SurfDetector {
  public:
   explicit SurfDetector(const ExtractionSettings& settings);
@@ -51,8 +51,8 @@ class SurfDetector {
   std::vector<Candidate> candidates_;  ///< strongest first
   std::size_t examined_ = 0;           ///< candidates that it took to select the keypoints
   std::vector<Keypoint> keypoints_;
-  std::vector<int> bucket_sizes_;             ///< candidates of each bucket so far
-  std::vector<std::pair<int, int>> ranked_;   ///< rank within the bucket, number of the candidate
+  std::vector<int> bucket_sizes_;            ///< candidates of each bucket so far
+  std::vector<std::pair<int, int>> ranked_;  ///< rank within the bucket, number of the candidate
 };
 
 }  // namespace perennial

@@ -17,6 +17,8 @@ double robustConfidence(const VotePeak& peak) {
   return logistic(-0.774 + 6.083 * log_lead);
 }
 
-double histogramConfidence(int inliers) { return logistic(-0.937 + 1.892 * std::log(static_cast<double>(inliers))); }
+double histogramConfidence(int inliers) {
+  return logistic(-0.937 + 1.892 * std::log(static_cast<double>(inliers)));
+}
 
 }  // namespace perennial

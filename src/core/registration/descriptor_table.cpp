@@ -8,8 +8,8 @@ void DescriptorTable::resize(std::size_t size) {
   words_.resize(kWords * stride_);
 }
 
-void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
-                      std::uint16_t* distances) noexcept {
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
+                      std::size_t end, std::uint16_t* distances) noexcept {
   for (std::size_t j = begin; j < end; ++j) {
     int distance = 0;
     for (std::size_t w = 0; w < DescriptorTable::kWords; ++w) {

@@ -33,7 +33,7 @@ class DescriptorTable {
 };
 
 /// distances[j - begin] = Hamming distance to the j-th descriptor of the table, for j = begin..end-1.
-void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
-                      std::uint16_t* distances) noexcept;
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
+                      std::size_t end, std::uint16_t* distances) noexcept;
 
 }  // namespace perennial

@@ -9,13 +9,15 @@
 
 namespace perennial {
 
-inline double horizontalDifference(const FeatureSet& map, const FeatureSet& view, std::size_t i, std::int32_t j) {
+inline double horizontalDifference(const FeatureSet& map, const FeatureSet& view, std::size_t i,
+                                   std::int32_t j) {
   return double{map.keypoints[i].x} - double{view.keypoints[static_cast<std::size_t>(j)].x};
 }
 
 /// Calls visit(i, difference) for every pair of a registration.
 template <class Visit>
-void forEachPair(const FeatureSet& map, const FeatureSet& view, const RegistrationResult& result, Visit visit) {
+void forEachPair(const FeatureSet& map, const FeatureSet& view, const RegistrationResult& result,
+                 Visit visit) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (result.partners[i] >= 0) {
       visit(i, horizontalDifference(map, view, i, result.partners[i]));
@@ -23,9 +25,10 @@ void forEachPair(const FeatureSet& map, const FeatureSet& view, const Registrati
   }
 }
 
-/// Counts the pairs into `result.matches` and `result.histogram`, and marks them as matched incorrectly; what is right
-/// is known only afterwards.
-inline void countPairs(const FeatureSet& map, const FeatureSet& view, double bin_width_px, RegistrationResult& result) {
+/// Counts the pairs into `result.matches` and `result.histogram`, and marks them as matched incorrectly; what
+/// is right is known only afterwards.
+inline void countPairs(const FeatureSet& map, const FeatureSet& view, double bin_width_px,
+                       RegistrationResult& result) {
   double largest = 0.0;
   result.matches = 0;
   result.states.assign(map.size(), FeatureState::kNotMatched);

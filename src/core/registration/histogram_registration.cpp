@@ -1,5 +1,5 @@
-// Registration by voting: Halodova et al., "Predictive and adaptive maps for long-term visual navigation in changing
-// environments", IROS 2019, section III.
+// Registration by voting: Halodova et al., "Predictive and adaptive maps for long-term visual navigation in
+// changing environments", IROS 2019, section III.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,8 +16,8 @@
 namespace perennial {
 namespace {
 
-/// Index of the nearest descriptor if it passes the ratio test against all others, otherwise -1; of equally near ones
-/// the first.
+/// Index of the nearest descriptor if it passes the ratio test against all others, otherwise -1; of equally
+/// near ones the first.
 std::int32_t findPartner(const std::vector<std::uint16_t>& distances, double ratio) {
   int nearest = Descriptor::kBits + 1;
   int second = Descriptor::kBits + 1;
@@ -51,7 +51,8 @@ void findPairs(const FeatureSet& map, const FeatureSet& view, const Registration
     if (j < 0) {
       continue;
     }
-    const double vertical = double{map.keypoints[i].y} - double{view.keypoints[static_cast<std::size_t>(j)].y};
+    const double vertical =
+        double{map.keypoints[i].y} - double{view.keypoints[static_cast<std::size_t>(j)].y};
     if (std::abs(vertical) <= settings.max_vertical_px) {
       partners[i] = j;
     }

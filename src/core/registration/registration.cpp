@@ -19,8 +19,9 @@ std::optional<RegistrationMethod> registrationMethod(const std::string& name) {
 
 RegistrationSettings RegistrationSettings::load(ParameterReader& reader) {
   RegistrationSettings settings;
-  const std::string method = reader.choice("method", nameOf(settings.method),
-                                           {nameOf(RegistrationMethod::kHistogram), nameOf(RegistrationMethod::kRobust)});
+  const std::string method =
+      reader.choice("method", nameOf(settings.method),
+                    {nameOf(RegistrationMethod::kHistogram), nameOf(RegistrationMethod::kRobust)});
   settings.method = registrationMethod(method).value_or(settings.method);
   settings.ratio = reader.real("ratio", settings.ratio, 0.0, 1.0);
   settings.max_vertical_px = reader.real("max_vertical_px", settings.max_vertical_px, 0.0, 10000.0);

@@ -13,8 +13,9 @@
 namespace perennial {
 namespace {
 
-/// Mutual nearest neighbours further apart than this are no pair: of such distances there are hardly more between the
-/// same things seen twice than between any two things (8 % more on real images; twice as many at 56 bits).
+/// Mutual nearest neighbours further apart than this are no pair: of such distances there are hardly more
+/// between the same things seen twice than between any two things (8 % more on real images; twice as many at
+/// 56 bits).
 constexpr std::uint16_t kPairDistance = 80;
 
 /// The view's features in order of y: those within the gate of a map feature are then neighbours.
@@ -44,8 +45,10 @@ void findNeighbours(const FeatureSet& map, const FeatureSet& view, double gate_p
   const auto hamming_distances = kernels().hamming_distances;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const double here = map.keypoints[i].y;
-    const auto first = std::lower_bound(y.begin(), y.end(), here - gate_px, [](float a, double b) { return a < b; });
-    const auto last = std::upper_bound(first, y.end(), here + gate_px, [](double a, float b) { return a < b; });
+    const auto first =
+        std::lower_bound(y.begin(), y.end(), here - gate_px, [](float a, double b) { return a < b; });
+    const auto last =
+        std::upper_bound(first, y.end(), here + gate_px, [](double a, float b) { return a < b; });
     const auto begin = static_cast<std::size_t>(first - y.begin());
     const auto end = static_cast<std::size_t>(last - y.begin());
     hamming_distances(map.descriptors[i], buffers.view, begin, end, buffers.distances.data());
@@ -87,8 +90,8 @@ void findPairs(std::size_t map_size, const RegistrationWorkspace::Buffers& buffe
 
 }  // namespace
 
-void RobustRegistration::registerInto(const FeatureSet& map, const FeatureSet& view, RegistrationWorkspace& workspace,
-                                      RegistrationResult& result) const {
+void RobustRegistration::registerInto(const FeatureSet& map, const FeatureSet& view,
+                                      RegistrationWorkspace& workspace, RegistrationResult& result) const {
   RegistrationWorkspace::Buffers& buffers = workspace.buffers();
   findNeighbours(map, view, settings().max_vertical_px, buffers);
   castVotes(map, view, buffers);

@@ -51,7 +51,9 @@ Moments momentsAbout(double place_px, const std::vector<Vote>& votes, double rea
 double refine(double place_px, const std::vector<Vote>& votes) {
   for (const double kernel_px : kRefinement_px) {
     for (int shift = 0; shift < kShifts; ++shift) {
-      const auto weight = [&](double offset) { return std::exp(-0.5 * offset * offset / (kernel_px * kernel_px)); };
+      const auto weight = [&](double offset) {
+        return std::exp(-0.5 * offset * offset / (kernel_px * kernel_px));
+      };
       const Moments moments = momentsAbout(place_px, votes, 3.0 * kernel_px, weight);
       place_px += moments.weight > 0.0 ? moments.first / moments.weight : 0.0;
     }

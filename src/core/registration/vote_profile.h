@@ -13,15 +13,17 @@ struct Vote {
 /// Peak of smoothed votes.
 struct VotePeak {
   double displacement_px = 0.0;  ///< refined to a fraction of a pixel
-  double width_px = 0.0;         ///< deviation of the votes about it, those at 2 kernels' distance and beyond left out
-  double height = 0.0;           ///< sum of weights, each times the Gaussian kernel at its distance
-  double second_height = 0.0;    ///< of the highest place elsewhere: beyond kElsewhere_px
+  double width_px =
+      0.0;              ///< deviation of the votes about it, those at 2 kernels' distance and beyond left out
+  double height = 0.0;  ///< sum of weights, each times the Gaussian kernel at its distance
+  double second_height = 0.0;  ///< of the highest place elsewhere: beyond kElsewhere_px
 };
 
 /// Weighted votes along one axis, smoothed by a Gaussian. Symmetric: mirrored votes give the mirrored peak.
 class VoteProfile {
  public:
-  static constexpr double kKernel_px = 15.0;    ///< deviation of the Gaussian: annotation, parallax, matching together
+  static constexpr double kKernel_px =
+      15.0;  ///< deviation of the Gaussian: annotation, parallax, matching together
   static constexpr double kElsewhere_px = 50.0;
 
   /// `votes` must not be empty. Memory is kept and used again.
@@ -32,7 +34,7 @@ class VoteProfile {
   void smooth();
   int highest() const;
 
-  int half_ = 0;                  ///< bins on either side of the middle one
+  int half_ = 0;  ///< bins on either side of the middle one
   std::vector<double> bins_;
   std::vector<double> smoothed_;
 };

@@ -12,25 +12,28 @@ class DescriptorTable;
 struct Descriptor;
 struct FilterRows;
 
-/// The loops that take the time, for one instruction set. Every path gives the same results to the last bit; the scalar
-/// functions, declared where they belong, are the reference.
+/// The loops that take the time, for one instruction set. Every path gives the same results to the last bit;
+/// the scalar functions, declared where they belong, are the reference.
 struct Kernels {
   const char* name;  ///< "scalar", "baseline", "ssse3", "sse4", "avx2", "avx512", "avx512dl", "neon"
 
   /// See differenceColumns() in box_hessian.h.
   void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
-  /// Whether hessian_row_above is faster than hessian_row: a compiler makes more of a loop that leaves nothing out.
+  /// Whether hessian_row_above is faster than hessian_row: a compiler makes more of a loop that leaves
+  /// nothing out.
   bool looks_first;
   /// See differenceColumnsXxYy() in box_hessian.h.
-  void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
+  void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end,
+                                   ColumnDifferences& differences);
   /// See hessianRowAbove() in box_hessian.h.
-  int (*hessian_row_above)(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
-                           int begin, int count, float threshold, float* responses);
+  int (*hessian_row_above)(const FilterRows& rows, const ColumnDifferences& differences,
+                           const BoxFilter& filter, int begin, int count, float threshold, float* responses);
   /// See hessianRow() in box_hessian.h, with a step of 1.
   void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
                       float* responses);
   /// See nextPeak() in maxima.h.
-  int (*next_peak)(const float* up, const float* here, const float* down, int begin, int end, float threshold);
+  int (*next_peak)(const float* up, const float* here, const float* down, int begin, int end,
+                   float threshold);
   /// See boxSumRow() in brief_descriptor.h.
   void (*box_sum_row)(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
                       std::uint16_t* sums);

@@ -1,5 +1,6 @@
-// Vector code through Google Highway: compiled once per instruction set, this file including itself. Must be built
-// without contraction of multiplications and additions: the results are those of the scalar code, to the bit.
+// Vector code through Google Highway: compiled once per instruction set, this file including itself. Must be
+// built without contraction of multiplications and additions: the results are those of the scalar code, to
+// the bit.
 #include "core/simd/vector_kernels.h"
 
 #include <algorithm>
@@ -38,7 +39,8 @@ HWY_INLINE U32 differenceXx(const FilterRows& rows, int x) {
 
 HWY_INLINE U32 differenceYy(const FilterRows& rows, int x) {
   const auto at = [x](const std::uint32_t* row) HWY_ATTR { return hn::LoadU(kU32, row + x); };
-  return hn::Sub(hn::Sub(at(rows.yy[3]), at(rows.yy[0])), timesThree(hn::Sub(at(rows.yy[2]), at(rows.yy[1]))));
+  return hn::Sub(hn::Sub(at(rows.yy[3]), at(rows.yy[0])),
+                 timesThree(hn::Sub(at(rows.yy[2]), at(rows.yy[1]))));
 }
 
 HWY_INLINE U32 differenceXy(const FilterRows& rows, int x) {
@@ -97,8 +99,8 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
   perennial::hessianRow(differences, filter, begin + i, 1, count - i, responses + i);
 }
 
-int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter, int begin,
-                    int count, float threshold, float* HWY_RESTRICT responses) {
+int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
+                    int begin, int count, float threshold, float* HWY_RESTRICT responses) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const int lobe = filter.lobe;
   const int half = filter.half();
@@ -128,7 +130,8 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
     hn::StoreU(hn::Sub(bound, hn::Mul(hn::Mul(weight, dxy), dxy)), kFloat, responses + i);
     computed += lanes;
   }
-  return computed + perennial::hessianRowAbove(rows, differences, filter, begin + i, count - i, threshold, responses + i);
+  return computed + perennial::hessianRowAbove(rows, differences, filter, begin + i, count - i, threshold,
+                                               responses + i);
 }
 
 int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) {
@@ -165,8 +168,8 @@ void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side,
   perennial::boxSumRow(above + x, below + x, side, count - x, sums + x);
 }
 
-void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin, std::size_t end,
-                      std::uint16_t* HWY_RESTRICT distances) {
+void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
+                      std::size_t end, std::uint16_t* HWY_RESTRICT distances) {
   const hn::Rebind<std::uint16_t, hn::ScalableTag<std::uint64_t>> u16;
   const hn::Rebind<std::uint32_t, hn::ScalableTag<std::uint64_t>> u32;
   const std::size_t lanes = hn::Lanes(kU64);
@@ -191,8 +194,9 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,      differenceColumns, true,      differenceColumnsXxYy, hessianRowAbove,
-                                  hessianRow, nextPeak,          boxSumRow, hammingDistances};
+  static constexpr Kernels kTable{kName,           differenceColumns, true,     differenceColumnsXxYy,
+                                  hessianRowAbove, hessianRow,        nextPeak, boxSumRow,
+                                  hammingDistances};
   return &kTable;
 }
 

@@ -19,7 +19,8 @@ namespace {
 
 struct Settings {
   int shift_px = 40;
-  std::string navigator = "/repeat_navigator";  ///< whose parameters for extraction, registration and steering are used
+  std::string navigator =
+      "/repeat_navigator";  ///< whose parameters for extraction, registration and steering are used
   static Settings load(perennial::ParameterReader& reader) {
     Settings settings;
     settings.shift_px = reader.integer("shift_px", settings.shift_px, 1, 1000);
@@ -36,9 +37,9 @@ cv::Mat turnedLeft(const cv::Mat& image, int shift_px) {
   return turned;
 }
 
-/// Registers and steers as the navigator would: with its parameters where they are set, the defaults where not.
-/// The first image is the map. Its own copies, turned by arithmetic, are registered once; every further image
-/// as it comes, so that a person can turn the robot and look.
+/// Registers and steers as the navigator would: with its parameters where they are set, the defaults where
+/// not. The first image is the map. Its own copies, turned by arithmetic, are registered once; every further
+/// image as it comes, so that a person can turn the robot and look.
 struct Node {
   Node(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
       : settings(perennial::loadNode<Settings>(private_nh, {})),

@@ -100,8 +100,7 @@ void Evaluation::runAll(const Dataset& dataset, const std::vector<SelectedPlace>
     const std::size_t r = job / input.places.size();
     const std::size_t p = job % input.places.size();
     const auto strategy = create(runs[r]);
-    results[r][p] =
-        replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].learningGate());
+    results[r][p] = replayPlace(input.places[p], *strategy, runs[r].registration(), runs[r].learningGate());
     const std::lock_guard<std::mutex> lock(mutex);
     replaying.show(++done);
     if (++places_done[r] == input.places.size()) {

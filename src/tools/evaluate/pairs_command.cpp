@@ -102,8 +102,7 @@ PairsSettings settingsFrom(const Assignments& assignments) {
     }
   }
   return {loadGroup<ExtractionSettings>("extraction", assignments),
-          loadGroup<RegistrationSettings>("registration", assignments),
-          std::nullopt};
+          loadGroup<RegistrationSettings>("registration", assignments), std::nullopt};
 }
 
 void print(const PairsEvaluation& evaluation) {
@@ -113,7 +112,8 @@ void print(const PairsEvaluation& evaluation) {
     std::printf(", %d px %.1f %%", threshold, 100.0 * share);
   }
   std::printf(", answered at 99 %% precision %.1f %%, %.2f ms extraction, %.2f ms registration\n",
-              100.0 * summary.answered_at_99_precision, evaluation.ms_per_extraction, evaluation.ms_per_registration);
+              100.0 * summary.answered_at_99_precision, evaluation.ms_per_extraction,
+              evaluation.ms_per_registration);
 }
 
 }  // namespace

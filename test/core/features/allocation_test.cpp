@@ -8,8 +8,8 @@
 #include "perennial/core/registration.h"
 #include "perennial/core/repeat_session.h"
 
-/// A program of its own, because it counts every allocation: those of C++, and those of OpenCV's matrices, which take their
-/// memory from the C library.
+/// A program of its own, because it counts every allocation: those of C++, and those of OpenCV's matrices,
+/// which take their memory from the C library.
 namespace {
 
 int allocations = 0;
@@ -34,8 +34,8 @@ namespace {
 /// Of OpenCV's matrices.
 class CountingAllocator : public cv::MatAllocator {
  public:
-  cv::UMatData* allocate(int dims, const int* sizes, int type, void* data, std::size_t* step, cv::AccessFlag flags,
-                         cv::UMatUsageFlags usage) const override {
+  cv::UMatData* allocate(int dims, const int* sizes, int type, void* data, std::size_t* step,
+                         cv::AccessFlag flags, cv::UMatUsageFlags usage) const override {
     ++allocations;
     return cv::Mat::getStdAllocator()->allocate(dims, sizes, type, data, step, flags, usage);
   }
@@ -97,7 +97,8 @@ TEST(WholeFrame, allocatesNothing) {
   }
 }
 
-/// Everything between an image and its velocity: also the choice between alternative maps and the place along the path.
+/// Everything between an image and its velocity: also the choice between alternative maps and the place along
+/// the path.
 TEST(RepeatSession, stepsWithoutAllocating) {
   const cv::Mat wide = texture(700, 480, 83);
   const cv::Mat taught = wide(cv::Rect(20, 0, 640, 480));

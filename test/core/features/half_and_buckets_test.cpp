@@ -27,7 +27,7 @@ TEST(HalfImage, isTheRoundedMeanOfFour) {
   cv::Mat half;
   halveImage(image, half);
   ASSERT_EQ(half.size(), cv::Size(2, 1));
-  EXPECT_EQ(half.at<std::uint8_t>(0, 0), 1);  // 0.5
+  EXPECT_EQ(half.at<std::uint8_t>(0, 0), 1);    // 0.5
   EXPECT_EQ(half.at<std::uint8_t>(0, 1), 255);  // 254.75
 }
 
@@ -40,7 +40,8 @@ TEST(HalfResolution, keypointsAreInTheFullImage) {
   ASSERT_FALSE(features.empty());
   EXPECT_NEAR(features.keypoints[0].x, 320.0F, 0.5F);
   EXPECT_NEAR(features.keypoints[0].y, 200.0F, 0.5F);
-  EXPECT_NEAR(features.keypoints[0].scale, 8.0F / std::sqrt(2.0F), 0.5F) << "where the Hessian of a Gaussian peaks";
+  EXPECT_NEAR(features.keypoints[0].scale, 8.0F / std::sqrt(2.0F), 0.5F)
+      << "where the Hessian of a Gaussian peaks";
 }
 
 TEST(Buckets, spreadFeaturesOverTheImage) {
@@ -66,7 +67,8 @@ TEST(Buckets, eachHasItsStrongestFirst) {
   ExtractionSettings all = buckets(1, 1);
   all.features = 10000;
   const FeatureSet every = FeatureExtractor(all).extract(image);
-  // Per bucket: the kept ones are the strongest of all, and no two buckets differ by more than one while both have more.
+  // Per bucket: the kept ones are the strongest of all, and no two buckets differ by more than one while both
+  // have more.
   const auto bucketOf = [](const Keypoint& keypoint) {
     return std::make_pair(std::lround(keypoint.x) * 8 / 640, std::lround(keypoint.y) * 4 / 480);
   };

@@ -73,7 +73,8 @@ TEST(RobustRegistration, findsTheDisplacementToAFractionOfAPixel) {
 }
 
 TEST(RobustRegistration, findsFewFeaturesOfTheSameSceneAmongMany) {
-  // 90 of 500 features are seen again, with a fifth of their bits changed: the ratio test keeps hardly any of them.
+  // 90 of 500 features are seen again, with a fifth of their bits changed: the ratio test keeps hardly any of
+  // them.
   Scene scene(2);
   const FeatureSet common = scene.features(90);
   FeatureSet map = common;

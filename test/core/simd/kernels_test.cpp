@@ -43,7 +43,8 @@ TEST_P(EachPath, findsTheSameFeatures) {
     for (const ExtractionSettings& settings : kindsOfExtraction()) {
       FeatureExtractor extractor(settings);
       const FeatureSet first = extractor.extract(image);
-      const FeatureSet second = extractor.extract(image);  // with a threshold that has adapted: much is left out
+      const FeatureSet second =
+          extractor.extract(image);  // with a threshold that has adapted: much is left out
       useKernels(scalar());
       const FeatureSet expected = FeatureExtractor(settings).extract(image);
       useKernels(path());
@@ -72,7 +73,8 @@ TEST_P(EachPath, leavesOutOnlyWhatStaysBelowTheThreshold) {
     kernels().difference_columns_xx_yy(rows, 0, columns + 1, some);
     std::vector<float> sorted = expected;
     std::sort(sorted.begin(), sorted.end());
-    for (const float threshold : {sorted.front(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], 1.0F}) {
+    for (const float threshold :
+         {sorted.front(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], 1.0F}) {
       std::vector<float> found(static_cast<std::size_t>(count) + 1, 7.0F);
       const int computed =
           kernels().hessian_row_above(rows, some, filter, filter.half(), count, threshold, found.data());

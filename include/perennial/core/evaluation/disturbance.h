@@ -20,12 +20,13 @@ struct Disturbance {
   Kind kind = Kind::kCover;
   double amount = 0.0;
 
-  /// From "cover=0.2", "blur=10", "roll=3", "pitch=3", "saturate=0.5". Throws ParameterError, also for an amount that
-  /// makes no sense.
+  /// From "cover=0.2", "blur=10", "roll=3", "pitch=3", "saturate=0.5". Throws ParameterError, also for an
+  /// amount that makes no sense.
   static Disturbance parse(const std::string& text);
 };
 
-/// The image, CV_8UC1, disturbed. Where the object stands, how it looks and which side is white follow from `seed`.
+/// The image, CV_8UC1, disturbed. Where the object stands, how it looks and which side is white follow from
+/// `seed`.
 cv::Mat disturbed(const cv::Mat& image, const Disturbance& disturbance, std::uint64_t seed);
 
 }  // namespace perennial

@@ -61,12 +61,12 @@ struct PairsSummary {
 
 PairsSummary summarisePairs(const std::vector<PairRecord>& records);
 
-/// The largest share of all pairs that can be answered, the most confident first, so that `precision` of the answers are
-/// right within `within_px`. Pairs of equal confidence are answered together or not at all.
+/// The largest share of all pairs that can be answered, the most confident first, so that `precision` of the
+/// answers are right within `within_px`. Pairs of equal confidence are answered together or not at all.
 double answeredAtPrecision(const std::vector<PairRecord>& records, double precision, double within_px);
 
-/// Writes errors.csv, a line per pair, and summary.json. Creates the folder. Throws Error when it cannot be written.
-/// `settings`: key and value of what was not by default.
+/// Writes errors.csv, a line per pair, and summary.json. Creates the folder. Throws Error when it cannot be
+/// written. `settings`: key and value of what was not by default.
 void writePairs(const std::string& folder, const std::vector<std::pair<std::string, std::string>>& settings,
                 const PairsEvaluation& evaluation);
 
