@@ -38,7 +38,8 @@ perennial::RunSettings runSettings(const ros::NodeHandle& nh) {
 bool play(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   const auto evaluation = perennial::loadGroup<RegistrationRecorderSettings>(private_nh, "evaluation");
   BagPlayer player(nh, private_nh);
-  if (evaluation.folder.empty()) {
+  // On a master that goes on, parameters of an evaluation before may still be there when a map is taught.
+  if (evaluation.folder.empty() || player.settings().mode != "repeat") {
     return player.run();
   }
   RegistrationRecorder recorder(nh, evaluation);
