@@ -60,6 +60,9 @@ class NavigationSupervisor {
   /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
   /// "odometry", ...
   const NavigationStatus& watch(double now_s, const std::string& missing, const MotionPermit& permit);
+  /// Before the first image to drive by: the robot stands and is busy with what it has, so nothing is missing.
+  /// `doing`: for a person; it stays the reason for starting.
+  const NavigationStatus& prepare(double now_s, const std::string& doing, const MotionPermit& permit);
   /// Images came that cannot be used, and why; empty: they can again.
   void setImageProblem(const std::string& problem) { image_problem_ = problem; }
 
@@ -87,6 +90,7 @@ class NavigationSupervisor {
   double newest_s_ = 0.0;  ///< newest time heard of
   double seen_s_ = 0.0;    ///< stamp of the newest image used, or of the goal
   bool seen_any_ = false;
+  std::string starting_;  ///< reason for a robot that has not seen anything yet
   Sight sight_;
   double blind_from_m_ = 0.0;  ///< travelled distance where the path was last recognised
   double blind_m_ = 0.0;       ///< driven since
