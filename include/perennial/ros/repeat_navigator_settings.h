@@ -7,6 +7,7 @@
 #include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/odometer.h"
 #include "perennial/core/parameter_reader.h"
+#include "perennial/core/place_finder.h"
 #include "perennial/core/repeat_session.h"
 
 namespace perennial {
@@ -22,6 +23,7 @@ struct RepeatNavigatorSettings {
 
   RepeatSettings repeat;          ///< groups extraction, registration, steering, along_path
   OdometerSettings odometer;      ///< group odometer
+  LocalisationSettings localisation;  ///< group localisation
   SupervisorSettings supervisor;  ///< group supervisor, with the time-outs above
   VelocityLimits limits;          ///< group limits
   InterlockSettings interlock;    ///< groups dead_man, obstacles, teleop

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <ros/ros.h>
 
+#include "perennial/core/active_map.h"
 #include "perennial_nav/BeginTraversalResponse.h"
 
 namespace perennial {
@@ -20,6 +23,10 @@ class TraversalClient {
   /// Nothing happens when no traversal is open. Returns how many local maps learned something.
   std::uint32_t end(bool commit, const ros::Time& stamp);
 
+  /// Local maps of the open traversal from index `first` on, at most `count` of them; none behind the path's
+  /// end.
+  std::vector<ActiveMap> localMaps(std::size_t first, std::size_t count);
+
   void countRegistration() { ++registrations_; }
   bool open() const { return open_; }
   /// Whether the manager that opened the traversal is still there: its connection, kept open, tells at once.
@@ -31,6 +38,7 @@ class TraversalClient {
  private:
   ros::NodeHandle nh_;
   ros::ServiceClient begin_;
+  ros::ServiceClient local_maps_;   ///< persistent once it was needed
   mutable ros::ServiceClient end_;  ///< persistent while a traversal is open
   bool open_ = false;
   std::uint32_t id_ = 0;
