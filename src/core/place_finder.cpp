@@ -158,8 +158,7 @@ PlaceGuess PlaceFinder::guess() {
   guess.index = best.index;
   guess.inliers = best.inliers;
   guess.certainty = best.confidence * (1.0 - static_cast<double>(rival_inliers) / best.inliers);
-  guess.reason = "at " + humanMetres(guess.distance_m) + " of the path, " + agreeing(best.inliers) +
-                 ", certainty " + humanPercent(guess.certainty);
+  guess.reason = "at " + humanMetres(guess.distance_m) + " of the path, " + agreeing(best.inliers);
   return guess;
 }
 

@@ -57,8 +57,9 @@ void RepeatNavigator::startAt(const PlaceGuess& place, const ros::Time& stamp) {
   }
   run_->begun_m = place.distance_m;
   run_->certainty = place.certainty;
-  ROS_INFO("the robot is %s", place.reason.c_str());
-  prepare("found: " + place.reason + "; waiting for local maps");
+  const std::string found = place.reason + ", certainty " + humanPercent(place.certainty);
+  ROS_INFO("the robot is %s", found.c_str());
+  prepare("found: " + found + "; waiting for local maps");
 }
 
 /// The robot stands, and this is why.

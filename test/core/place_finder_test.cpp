@@ -50,7 +50,8 @@ TEST(PlaceFinder, findsAPlaceAmongAThousandLocalMapsInUnderASecond) {
   const auto begin = std::chrono::steady_clock::now();
   const PlaceGuess guess = find(maps, view);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  std::printf("1000 local maps of 500 features: %.3f s, %s\n", took.count(), guess.reason.c_str());
+  std::printf("1000 local maps of 500 features: %.3f s, %s, certainty %.2f\n", took.count(),
+              guess.reason.c_str(), guess.certainty);
   EXPECT_TRUE(guess.sure) << guess.reason;
   EXPECT_GE(guess.distance_m, 123.0 - 1e-9);
   EXPECT_LE(guess.distance_m, 123.8 + 1e-9);
