@@ -81,9 +81,8 @@ void PlaceFinder::consider(ActiveMap map) {
   open_.inliers = std::max(open_.inliers, inliers);
   open_.members.push_back({std::move(map), inliers});
   if (open_.members.size() > kMapsOfAStretch) {
-    open_.members.erase(
-        std::min_element(open_.members.begin(), open_.members.end(),
-                         [](const auto& a, const auto& b) { return a.inliers < b.inliers; }));
+    open_.members.erase(std::min_element(open_.members.begin(), open_.members.end(),
+                                         [](const auto& a, const auto& b) { return a.inliers < b.inliers; }));
   }
 }
 
@@ -119,15 +118,15 @@ std::vector<PlaceFinder::Candidate> PlaceFinder::likeliest() {
   return candidates;
 }
 
-/// Whether they are near to each other, straight along the path or across the ends of a loop. Places as near as
-/// that across the ends of a path that is no loop do not look alike, and the question does not arise.
+/// Whether they are near to each other, straight along the path or across the ends of a loop. Places as near
+/// as that across the ends of a path that is no loop do not look alike, and the question does not arise.
 bool PlaceFinder::samePlace(const Candidate& a, const Candidate& b) const {
   const double apart_m = std::abs(a.distance_m - b.distance_m);
   return std::min(apart_m, last_m_ - first_m_ - apart_m) <= settings_.elsewhere_m;
 }
 
-/// The likeliest candidate; but if that lies at the end of a loop, the one at its beginning when that is about as
-/// likely.
+/// The likeliest candidate; but if that lies at the end of a loop, the one at its beginning when that is
+/// about as likely.
 PlaceFinder::Candidate PlaceFinder::beginningOfLoop(const std::vector<Candidate>& candidates) const {
   const Candidate& best = candidates.front();
   const auto beginning = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {

@@ -399,13 +399,13 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
     ROS_ERROR("%s", error.what());  // the map stays as it was; the robot can go on
   }
   if (run.number == run.goal.traversals) {
-    const std::string reason = "repeated '" + run.goal.map_name + "' " +
-                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") +
-                               (run.goal.localise ? " from " + humanMetres(run.begun_m) + " on, found with certainty " +
-                                                        humanPercent(run.certainty)
-                                                  : "") +
-                               "; recognised " + std::to_string(run.recognised) + " of " +
-                               std::to_string(run.images) + " images";
+    const std::string reason =
+        "repeated '" + run.goal.map_name + "' " +
+        (run.number == 1 ? "once" : std::to_string(run.number) + " times") +
+        (run.goal.localise ? " from " + humanMetres(run.begun_m) + " on, found with certainty " +
+                                 humanPercent(run.certainty)
+                           : "") +
+        "; recognised " + std::to_string(run.recognised) + " of " + std::to_string(run.images) + " images";
     supervisor_.finish(reason);
     publishState(stamp);
     server_.setSucceeded(endRun(true, reason), reason);

@@ -1,5 +1,5 @@
-// The part of the navigator that finds where on the path the robot is, for a goal with `localise`. The robot stands
-// meanwhile: nothing here commands it.
+// The part of the navigator that finds where on the path the robot is, for a goal with `localise`. The robot
+// stands meanwhile: nothing here commands it.
 #include <utility>
 
 #include "perennial/core/error.h"
@@ -13,7 +13,8 @@ void RepeatNavigator::beginLocalisation() {
   prepare("waiting for an image and odometry, to look for the place");
 }
 
-/// While a person drives the robot, its place is not worth looking for, and what was seen before is of elsewhere.
+/// While a person drives the robot, its place is not worth looking for, and what was seen before is of
+/// elsewhere.
 void RepeatNavigator::seekPlace(const sensor_msgs::ImageConstPtr& image, const cv::Mat& grey,
                                 double travelled_m) {
   if (drivenByHand()) {

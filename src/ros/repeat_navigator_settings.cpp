@@ -8,9 +8,9 @@
 namespace perennial {
 namespace {
 
-const std::vector<std::string> kGroups{"extraction", "registration", "steering", "along_path", "localisation",
-                                       "odometer",   "supervisor",   "limits",   "dead_man",   "obstacles",
-                                       "teleop"};
+const std::vector<std::string> kGroups{"extraction",   "registration", "steering",   "along_path",
+                                       "localisation", "odometer",     "supervisor", "limits",
+                                       "dead_man",     "obstacles",    "teleop"};
 
 /// Of a robot of which nothing is known.
 const VelocityLimits kLimits{1.5, 1.5, 1.5, 10.0, 2.0, 4.0, 5.0};

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "perennial/core/active_map.h"
 #include "perennial/core/feature.h"
@@ -15,7 +16,7 @@ namespace perennial {
 ///
 ///     localisation.look(view, travelled_m);             // a new image
 ///     while (!localisation.complete()) consider(...);   // local maps, from next() on, in order
-///     localisation.conclude();                          // a place, a refusal, or none: look at another image
+///     localisation.conclude();                          // a place, a refusal, or none: look again
 ///
 /// The robot may move meanwhile: places are compared by how far it has travelled between the images. Not
 /// thread-safe.

@@ -60,8 +60,8 @@ class NavigationSupervisor {
   /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
   /// "odometry", ...
   const NavigationStatus& watch(double now_s, const std::string& missing, const MotionPermit& permit);
-  /// Before the first image to drive by: the robot stands and is busy with what it has, so nothing is missing.
-  /// `doing`: for a person; it stays the reason for starting.
+  /// Before the first image to drive by: the robot stands and is busy with what it has, so nothing is
+  /// missing. `doing`: for a person; it stays the reason for starting.
   const NavigationStatus& prepare(double now_s, const std::string& doing, const MotionPermit& permit);
   /// Images came that cannot be used, and why; empty: they can again.
   void setImageProblem(const std::string& problem) { image_problem_ = problem; }

@@ -41,7 +41,8 @@ struct PlaceGuess {
 /// loop, and one place: its beginning. Not thread-safe.
 class PlaceFinder {
  public:
-  explicit PlaceFinder(const LocalisationSettings& settings = {}, const RegistrationSettings& registration = {});
+  explicit PlaceFinder(const LocalisationSettings& settings = {},
+                       const RegistrationSettings& registration = {});
 
   /// Begins to seek a view; an earlier search is forgotten.
   void seek(FeatureSet view);

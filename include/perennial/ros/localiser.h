@@ -14,9 +14,9 @@
 
 namespace perennial {
 
-/// Finds the robot's place on the path of the open traversal: compares images with all its local maps, which it
-/// asks map_manager for a few at a time. Between two pieces of that work other callbacks get their turn, so
-/// that a goal can be cancelled meanwhile. All on the global queue; does not depend on ROS time.
+/// Finds the robot's place on the path of the open traversal: compares images with all its local maps, which
+/// it asks map_manager for a few at a time. Between two pieces of that work other callbacks get their turn,
+/// so that a goal can be cancelled meanwhile. All on the global queue; does not depend on ROS time.
 class Localiser {
  public:
   struct Events {

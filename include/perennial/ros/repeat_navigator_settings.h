@@ -21,12 +21,12 @@ struct RepeatNavigatorSettings {
   double stall_timeout_s =
       5.0;  ///< driving for so long without the odometry moving: the goal fails; 0: never
 
-  RepeatSettings repeat;          ///< groups extraction, registration, steering, along_path
-  OdometerSettings odometer;      ///< group odometer
+  RepeatSettings repeat;              ///< groups extraction, registration, steering, along_path
+  OdometerSettings odometer;          ///< group odometer
   LocalisationSettings localisation;  ///< group localisation
-  SupervisorSettings supervisor;  ///< group supervisor, with the time-outs above
-  VelocityLimits limits;          ///< group limits
-  InterlockSettings interlock;    ///< groups dead_man, obstacles, teleop
+  SupervisorSettings supervisor;      ///< group supervisor, with the time-outs above
+  VelocityLimits limits;              ///< group limits
+  InterlockSettings interlock;        ///< groups dead_man, obstacles, teleop
 
   /// The parameters of the node itself.
   static RepeatNavigatorSettings load(ParameterReader& reader);
