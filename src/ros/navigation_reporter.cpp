@@ -16,10 +16,11 @@ constexpr char kNode[] = "repeat_navigator";
 }  // namespace
 
 NavigationReporter::NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh)
-    : transport_(nh), diagnostics_(nh, private_nh) {
-  state_publisher_ = nh.advertise<perennial_nav::NavigationState>("navigation_state", 100, true);
-  processed_publisher_ = nh.advertise<perennial_nav::Processed>("processed", 100);
-  matches_publisher_ = transport_.advertise("matches", 1);
+    : transport_(nh),
+      state_publisher_(nh.advertise<perennial_nav::NavigationState>("navigation_state", 100, true)),
+      processed_publisher_(nh.advertise<perennial_nav::Processed>("processed", 100)),
+      matches_publisher_(transport_.advertise("matches", 1)),
+      diagnostics_(nh, private_nh) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("navigation", [this](auto& status) { diagnose(status); });
 }
