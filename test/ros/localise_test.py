@@ -7,6 +7,7 @@ import math
 import os
 import re
 import shutil
+import subprocess
 import sys
 import unittest
 from unittest import mock
@@ -102,6 +103,15 @@ class Localise(unittest.TestCase):
         self.assertAlmostEqual(self.robot.x, LENGTH_M, delta=1.0)
         self.assertTrue(self.seen("looking for the place: image 1 of 2"))
         self.assertTrue(self.seen("features agree, certainty"))
+
+    def test_asked_for_from_the_command_line(self):
+        self.stack.settle(5.5)
+        goal = subprocess.Popen(["rosrun", "perennial_nav", "goal", "repeat", "path", "--localise"],
+                                stdout=subprocess.PIPE, universal_newlines=True)  # fmt: skip
+        wait_until(lambda: goal.poll() is not None or self.robot.step(BOTH) is None, "the end of the path")
+        output = goal.communicate()[0]
+        self.assertEqual(goal.returncode, 0, output)
+        self.assertRegex(output, "from 5.[0-9] m on, found with certainty")
 
     def test_finds_the_beginning_too(self):
         self.begin(0.3)
