@@ -10,7 +10,7 @@ import sys
 
 ROBOT, COMPUTER = "10.0.0.1", "10.0.0.2"
 INSIDE = "PERENNIAL_TEST_MACHINE"  # set in the environment of programs that have their own namespace
-LOSS = ["-i", "link", "-m", "statistic", "--mode", "random", "--probability"]
+LOSS = ["-i", "wire", "-m", "statistic", "--mode", "random", "--probability"]
 # With root's rights here, or with those of a user who may be root in a namespace.
 WAYS_IN = (["unshare", "--net"], ["unshare", "--user", "--map-root-user", "--net"])
 WITH_PARENT = ["setpriv", "--pdeathsig", "KILL"]
@@ -22,7 +22,7 @@ def run(*command):
 
 def why_not(way_in):
     """What is missing for two machines with this way into a namespace; None if nothing is."""
-    trial = "ip link add link type veth peer name other && iptables -A INPUT %s 0.5 -j DROP" % " ".join(LOSS)
+    trial = "ip link add name wire type veth peer name other && iptables -A INPUT %s 0.5 -j DROP" % " ".join(LOSS)
     try:
         run(*way_in, "sh", "-c", trial)
     except OSError as error:
@@ -57,11 +57,11 @@ class Machines:
             stdin=subprocess.PIPE, stdout=subprocess.PIPE)  # fmt: skip
         assert self.keeper.stdout.readline() == b"ready\n"
         run("ip", "link", "set", "lo", "up")
-        run("ip", "link", "add", "link", "type", "veth",
-            "peer", "name", "link", "netns", str(self.keeper.pid))  # fmt: skip
+        run("ip", "link", "add", "name", "wire", "type", "veth",
+            "peer", "name", "wire", "netns", str(self.keeper.pid))  # fmt: skip
         for on, address in (([], ROBOT), (self.on_computer(), COMPUTER)):
-            run(*on, "ip", "address", "add", address + "/24", "dev", "link")
-            run(*on, "ip", "link", "set", "link", "up")
+            run(*on, "ip", "address", "add", address + "/24", "dev", "wire")
+            run(*on, "ip", "link", "set", "wire", "up")
 
     def on_computer(self):
         """What comes before a command to run it on the other machine."""
@@ -88,7 +88,7 @@ class Machines:
 
     @staticmethod
     def unplug():
-        run("ip", "link", "set", "link", "down")
+        run("ip", "link", "set", "wire", "down")
 
     def silence(self):
         """Packets are swallowed, as out of reach of a radio: neither side is told."""
@@ -99,6 +99,6 @@ class Machines:
             run(*on, "iptables", "-A", "INPUT", *LOSS, str(probability), "-j", "DROP")
 
     def restore(self):
-        run("ip", "link", "set", "link", "up")
+        run("ip", "link", "set", "wire", "up")
         for on in ([], self.on_computer()):
             run(*on, "iptables", "-F", "INPUT")
