@@ -67,8 +67,11 @@ const ActiveMap* ActiveMapWindow::nearest(double distance_m) const {
   });
   const bool may_be_nearer_before = best == maps_.begin() && best->index > 0 && distance_m < best->distance_m;
   const bool may_be_nearer_after =
-      best == std::prev(maps_.end()) && best->index + 1 < path_size_ && distance_m > best->distance_m;
-  return may_be_nearer_before || may_be_nearer_after ? nullptr : &*best;
+      best == std::prev(maps_.end()) && (best->index + 1 < path_size_) && distance_m > best->distance_m;
+  if (may_be_nearer_before || may_be_nearer_after) {
+    return nullptr;
+  }
+  return &*best;
 }
 
 const ActiveMap* ActiveMapWindow::find(std::uint32_t index) const {

@@ -86,6 +86,7 @@ void MapManagerNode::open(const perennial_nav::BeginTraversalRequest& request,
   problem_.clear();
 
   const MapMetadata& metadata = manager_->file().metadata();
+  response.node = ros::this_node::getName();
   response.traversal = traversal_;
   response.camera = metadata.camera;
   response.image_width = static_cast<std::uint32_t>(metadata.image_width);

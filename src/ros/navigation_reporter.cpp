@@ -7,7 +7,6 @@
 #include "perennial/core/matches_picture.h"
 #include "perennial/ros/conversions.h"
 #include "perennial_nav/Processed.h"
-#include "perennial_nav/Registration.h"
 
 namespace perennial {
 namespace {
@@ -17,11 +16,11 @@ constexpr char kNode[] = "repeat_navigator";
 }  // namespace
 
 NavigationReporter::NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh)
-    : transport_(nh), diagnostics_(nh, private_nh) {
-  registration_publisher_ = nh.advertise<perennial_nav::Registration>("registration", 1000);
-  state_publisher_ = nh.advertise<perennial_nav::NavigationState>("navigation_state", 100, true);
-  processed_publisher_ = nh.advertise<perennial_nav::Processed>("processed", 100);
-  matches_publisher_ = transport_.advertise("matches", 1);
+    : transport_(nh),
+      state_publisher_(nh.advertise<perennial_nav::NavigationState>("navigation_state", 100, true)),
+      processed_publisher_(nh.advertise<perennial_nav::Processed>("processed", 100)),
+      matches_publisher_(transport_.advertise("matches", 1)),
+      diagnostics_(nh, private_nh) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("navigation", [this](auto& status) { diagnose(status); });
 }
@@ -52,14 +51,6 @@ void NavigationReporter::state(const ros::Time& stamp, const NavigationStatus& s
     state_.inliers = result.inliers;
   }
   state_publisher_.publish(state_);
-}
-
-void NavigationReporter::registration(const NavigationStep& step, const std_msgs::Header& header,
-                                      std::uint32_t traversal) {
-  perennial_nav::Registration registration = toMessage(step);
-  registration.header = header;
-  registration.traversal = traversal;
-  registration_publisher_.publish(registration);
 }
 
 void NavigationReporter::matches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image,

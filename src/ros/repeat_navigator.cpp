@@ -324,8 +324,9 @@ void RepeatNavigator::drive(const NavigationStep& step, const sensor_msgs::Image
 
 void RepeatNavigator::report(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image) {
   run_->count(step);
-  reporter_.registration(step, image->header, traversals_.id());
-  traversals_.countRegistration();
+  perennial_nav::Registration registration = toMessage(step);
+  registration.header = image->header;
+  traversals_.publish(std::move(registration));
   publishState(image->header.stamp, &step);
   const RegistrationResult& result = step.registration.result;
   perennial_nav::RepeatFeedback feedback;

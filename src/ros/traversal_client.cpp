@@ -7,9 +7,29 @@
 #include "perennial_nav/EndTraversal.h"
 
 namespace perennial {
+namespace {
+
+/// A manager that was started just now is connected within a fraction of a second. Real time.
+const ros::WallDuration kListenerPatience(5.0);
+const ros::WallDuration kListenerPoll(0.05);
+
+}  // namespace
 
 TraversalClient::TraversalClient(ros::NodeHandle nh)
-    : nh_(std::move(nh)), begin_(nh_.serviceClient<perennial_nav::BeginTraversal>("begin_traversal")) {}
+    : nh_(std::move(nh)), begin_(nh_.serviceClient<perennial_nav::BeginTraversal>("begin_traversal")) {
+  const auto connected = [this](const ros::SingleSubscriberPublisher& listener) {
+    listeners_.insert(listener.getSubscriberName());
+  };
+  const auto gone = [this](const ros::SingleSubscriberPublisher& listener) {
+    const auto entry = listeners_.find(listener.getSubscriberName());
+    if (entry != listeners_.end()) {
+      listeners_.erase(entry);
+    }
+  };
+  ros::AdvertiseOptions options = ros::AdvertiseOptions::create<perennial_nav::Registration>(
+      "registration", 1000, connected, gone, ros::VoidConstPtr(), &listeners_queue_);
+  publisher_ = nh_.advertise(options);
+}
 
 perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& map, double start_m,
                                                              const ros::Time& stamp) {
@@ -29,7 +49,25 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   open_ = true;
   id_ = service.response.traversal;
   registrations_ = 0;
+  awaitListener(service.response.node);
   return service.response;
+}
+
+void TraversalClient::awaitListener(const std::string& node) {
+  const ros::WallTime last = ros::WallTime::now() + kListenerPatience;
+  for (listeners_queue_.callAvailable(); listeners_.count(node) == 0;) {
+    if (!ros::ok() || ros::WallTime::now() > last) {
+      throw MapError(node + " answers on " + begin_.getService() + ", but does not listen to " +
+                     publisher_.getTopic() + "; is the topic remapped for one of the two only?");
+    }
+    listeners_queue_.callAvailable(kListenerPoll);
+  }
+}
+
+void TraversalClient::publish(perennial_nav::Registration registration) {
+  registration.traversal = id_;
+  publisher_.publish(registration);
+  ++registrations_;
 }
 
 std::uint32_t TraversalClient::end(bool commit, const ros::Time& stamp) {

@@ -14,7 +14,7 @@
 
 namespace perennial {
 
-/// Everything that the navigator tells others: registration, navigation_state (latched), matches (drawn only
+/// What the navigator tells others beside the registrations: navigation_state (latched), matches (drawn only
 /// while somebody subscribes), processed, diagnostics.
 class NavigationReporter {
  public:
@@ -23,7 +23,6 @@ class NavigationReporter {
   /// `run`: the goal being served; `step`: what the newest image gave; nullptr when there is none.
   void state(const ros::Time& stamp, const NavigationStatus& status, const geometry_msgs::Twist& command,
              const RepeatRun* run, const NavigationStep* step);
-  void registration(const NavigationStep& step, const std_msgs::Header& header, std::uint32_t traversal);
   void matches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image, const RepeatRun& run);
   /// Done with an image; `drives`: whether the command is meant for it.
   void processed(const std_msgs::Header& header, bool drives, const geometry_msgs::Twist& command);
@@ -35,7 +34,6 @@ class NavigationReporter {
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   image_transport::ImageTransport transport_;
-  ros::Publisher registration_publisher_;
   ros::Publisher state_publisher_;
   ros::Publisher processed_publisher_;
   image_transport::Publisher matches_publisher_;

@@ -1,26 +1,31 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <cstdint>
+#include <set>
+#include <string>
+
 #include "perennial_nav/BeginTraversalResponse.h"
+#include "perennial_nav/Registration.h"
 
 namespace perennial {
 
-/// The navigator's side of the conversation with map_manager: opens and ends traversals and counts the
-/// registrations that the manager has to wait for. Calls block until the manager answers. Throws MapError
-/// with the manager's reason, or when no manager answers.
+/// The navigator's side of the conversation with map_manager: opens and ends traversals, publishes the
+/// registrations and counts them, so that the manager can wait for all. Calls block until the manager
+/// answers. Throws MapError with the manager's reason, or when no manager answers.
 class TraversalClient {
  public:
   explicit TraversalClient(ros::NodeHandle nh);
 
+  /// Returns when the manager is connected to `registration`, so that it will miss none.
   perennial_nav::BeginTraversalResponse begin(const std::string& map, double start_m, const ros::Time& stamp);
   /// Nothing happens when no traversal is open. Returns how many local maps learned something.
   std::uint32_t end(bool commit, const ros::Time& stamp);
 
-  void countRegistration() { ++registrations_; }
+  /// `registration.traversal` is filled in.
+  void publish(perennial_nav::Registration registration);
   bool open() const { return open_; }
   /// Whether the manager that opened the traversal is still there: its connection, kept open, tells at once.
   /// True while no traversal is open.
@@ -29,7 +34,12 @@ class TraversalClient {
   std::uint32_t id() const { return id_; }
 
  private:
+  void awaitListener(const std::string& node);
+
   ros::NodeHandle nh_;
+  ros::CallbackQueue listeners_queue_;
+  std::multiset<std::string> listeners_;  ///< nodes that are connected to `registration`
+  ros::Publisher publisher_;
   ros::ServiceClient begin_;
   mutable ros::ServiceClient end_;  ///< persistent while a traversal is open
   bool open_ = false;

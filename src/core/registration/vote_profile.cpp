@@ -20,8 +20,9 @@ using Kernel = std::array<double, kReach + 1>;
 
 Kernel gaussian() {
   Kernel kernel{};
-  for (int k = 0; k <= kReach; ++k) {
-    kernel[static_cast<std::size_t>(k)] = std::exp(-0.5 * std::pow(k * kBin_px / VoteProfile::kKernel_px, 2));
+  for (std::size_t k = 0; k < kernel.size(); ++k) {
+    const double offset = static_cast<double>(k) * kBin_px / VoteProfile::kKernel_px;
+    kernel[k] = std::exp(-0.5 * offset * offset);
   }
   return kernel;
 }

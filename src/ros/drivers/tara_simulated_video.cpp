@@ -203,8 +203,8 @@ void TaraSimulatedVideo::fill() {
   const std::uint32_t exposure = world_.exposure;
   if (exposure != kTaraAutomaticExposure && exposure != kTaraDefaultExposure) {
     for (std::uint32_t i = 0; i < frameSize(); ++i) {
-      words[i] = static_cast<std::uint8_t>(
-          std::min<std::uint64_t>(255, std::uint64_t{words[i]} * exposure / kTaraDefaultExposure));
+      const std::uint64_t brighter = static_cast<std::uint64_t>(words[i]) * exposure / kTaraDefaultExposure;
+      words[i] = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, brighter));
     }
   }
   std::uint32_t size = frameSize();
