@@ -78,7 +78,7 @@ class Killed(unittest.TestCase):
         wait_until(ended, "the goal to end")
         self.assertIn("map_manager is gone", self.stack.result(self.stack.repeat).reason)
         wait_until(self.robot.stands, "the robot to stop")
-        self.assertEqual(self.stack.states[-1].state, NavigationState.FAILED)
+        wait_until(lambda: self.stack.states[-1].state == NavigationState.FAILED, "the state 'failed'")
         wait_for_new("/map_manager", before)
         wait_until(self.serves, "the new map_manager")
         self.complete()
