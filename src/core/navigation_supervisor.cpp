@@ -19,6 +19,7 @@ SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   SupervisorSettings settings;
   settings.max_blind_distance_m =
       reader.real("max_blind_distance_m", settings.max_blind_distance_m, 0.0, 1e6);
+  settings.sights_to_trust = reader.integer("sights_to_trust", settings.sights_to_trust, 1, 1000);
   settings.hold_timeout_s = reader.real("hold_timeout_s", settings.hold_timeout_s, 0.1, 1e6);
   settings.blind_speed = reader.real("blind_speed", settings.blind_speed, 0.05, 1.0);
   settings.least_speed = reader.real("least_speed", settings.least_speed, 0.05, 1.0);
@@ -60,6 +61,7 @@ void NavigationSupervisor::start(double now_s) {
   newest_s_ = seen_s_ = now_s;
   seen_any_ = false;
   sight_ = {};
+  sights_in_a_row_ = 0;
   blind_from_m_ = blind_m_ = 0.0;
   holding_since_s_.reset();
   image_problem_.clear();
@@ -105,7 +107,8 @@ const NavigationStatus& NavigationSupervisor::prepare(double now_s, const std::s
 
 void NavigationSupervisor::noteSight(double travelled_m, const Sight& sight, const MotionPermit& permit) {
   const bool by_hand = permit.kind == MotionPermit::Kind::kManual;
-  if (sight.recognised || !seen_any_ || by_hand) {
+  sights_in_a_row_ = sight.recognised ? std::min(sights_in_a_row_ + 1, settings_.sights_to_trust) : 0;
+  if (trusted() || !seen_any_ || by_hand) {
     blind_from_m_ = travelled_m;  // what a person drives, a person sees
   }
   seen_any_ = true;
@@ -163,7 +166,7 @@ bool NavigationSupervisor::mustStop(double now_s, const std::string& missing, co
 }
 
 bool NavigationSupervisor::mustHold(double now_s, const MotionPermit& permit) {
-  const bool blind = !sight_.recognised && blind_m_ >= settings_.max_blind_distance_m;
+  const bool blind = !trusted() && blind_m_ >= settings_.max_blind_distance_m;
   if (!blind && permit.kind != MotionPermit::Kind::kHold) {
     return false;
   }

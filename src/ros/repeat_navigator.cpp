@@ -84,6 +84,7 @@ void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
   run_->goal.traversals = std::max<std::uint32_t>(1, goal.traversals);
   run_->started = run_->progress_stamp = now;
   odometer_.reset();
+  odometry_watch_.reset();
   images_.clear();
   image_watch_.reset();
   gate_.begin();
@@ -182,6 +183,10 @@ void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void RepeatNavigator::onOdometry(const nav_msgs::OdometryConstPtr& message) {
   if (!run_ || isFromBefore(message->header)) {
+    return;
+  }
+  if (!settings_.every_image && odometry_watch_.restarted(message->header.seq)) {
+    fail("the node of the odometry was started anew, and nobody knows how far the robot went meanwhile");
     return;
   }
   const std::string problem = odometer_.add(fromMessage(*message));

@@ -14,6 +14,7 @@
 #include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/odometer.h"
 #include "perennial/core/repeat_session.h"
+#include "perennial/core/restart_watch.h"
 #include "perennial/ros/command_gate.h"
 #include "perennial/ros/image_queue.h"
 #include "perennial/ros/live_settings.h"
@@ -86,6 +87,7 @@ class RepeatNavigator {
   ros::NodeHandle nh_;
   RepeatNavigatorSettings settings_;
   Odometer odometer_;
+  RestartWatch odometry_watch_;
   ImageQueue images_;
   ImageWatch image_watch_;
   NavigationSupervisor supervisor_;
