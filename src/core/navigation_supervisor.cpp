@@ -65,7 +65,8 @@ void NavigationSupervisor::start(double now_s) {
   blind_from_m_ = blind_m_ = 0.0;
   holding_since_s_.reset();
   image_problem_.clear();
-  set(NavigationMode::kStarting, "waiting for image, odometry and local maps", 0.0);
+  starting_ = "waiting for image, odometry and local maps";
+  set(NavigationMode::kStarting, starting_, 0.0);
 }
 
 const NavigationStatus& NavigationSupervisor::see(double stamp_s, double travelled_m, const Sight& sight,
@@ -87,6 +88,19 @@ const NavigationStatus& NavigationSupervisor::watch(double now_s, const std::str
   }
   if (active()) {
     decide(now_s, missing, permit);
+  }
+  return status_;
+}
+
+const NavigationStatus& NavigationSupervisor::prepare(double now_s, const std::string& doing,
+                                                      const MotionPermit& permit) {
+  if (active()) {
+    noteTime(now_s);
+  }
+  if (active()) {
+    seen_s_ = std::max(seen_s_, now_s);
+    starting_ = doing;
+    decide(now_s, "", permit);
   }
   return status_;
 }
@@ -121,7 +135,7 @@ void NavigationSupervisor::decide(double now_s, const std::string& missing, cons
     return;
   }
   if (!seen_any_) {
-    set(NavigationMode::kStarting, "waiting for image, odometry and local maps", 0.0);
+    set(NavigationMode::kStarting, starting_, 0.0);
     return;
   }
   if (mustHold(now_s, permit)) {

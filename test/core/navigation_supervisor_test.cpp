@@ -174,6 +174,33 @@ TEST_F(Supervisor, givesUpWhenNothingEverComes) {
   EXPECT_EQ(supervisor_.status().mode, Mode::kFailed);
 }
 
+TEST_F(Supervisor, aRobotThatPreparesIsNotSilentAndSaysWhatItDoes) {
+  supervisor_.start(now_s_);
+  for (int i = 0; i < 30; ++i) {
+    now_s_ += 1.0;
+    const NavigationStatus& status = supervisor_.prepare(now_s_, "looking for the place", {});
+    ASSERT_EQ(status.mode, Mode::kStarting);
+    EXPECT_EQ(status.reason, "looking for the place");
+    EXPECT_EQ(status.speed_factor, 0.0);
+  }
+  EXPECT_EQ(watch(0.1, "image").reason, "looking for the place") << "until something is seen";
+  EXPECT_EQ(watch(1.0, "image").mode, Mode::kStopped) << "afterwards silence counts again";
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
+}
+
+TEST_F(Supervisor, preparingIsStoppedByWhatForbidsMotion) {
+  supervisor_.start(now_s_);
+  const MotionPermit stop{Kind::kStop, 0.0, "the emergency stop is engaged", {}};
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", stop).mode, Mode::kStopped);
+  EXPECT_EQ(supervisor_.status().reason, stop.reason);
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", {}).mode, Mode::kStarting);
+  EXPECT_EQ(supervisor_.prepare(now_s_ - 5.0, "looking", {}).mode, Mode::kFailed) << "time goes back";
+}
+
+TEST_F(Supervisor, nothingIsPreparedWithoutAGoal) {
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", {}).mode, Mode::kIdle);
+}
+
 TEST_F(Supervisor, unusableImagesStopAtOnceThenFail) {
   startAndSee();
   supervisor_.setImageProblem("the camera is frozen");

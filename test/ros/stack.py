@@ -48,15 +48,15 @@ class Stack:
         wait_until(lambda: self.done(client), "the result")
         return client.get_result()
 
-    def teach_path(self, name, overwrite=False):
+    def teach_path(self, name, overwrite=False, length_m=LENGTH_M, speed=0.5):
         robot = self.robot
         self.settle()
         self.start(self.teach, TeachGoal(map_name=name, overwrite=overwrite))
         if self.done(self.teach):
             return self.result(self.teach)
-        robot.speed = 0.5
+        robot.speed = speed
         robot.x -= robot.speed * 0.1  # the first image is taken at 0
-        while robot.x < LENGTH_M - 1e-6:
+        while robot.x < length_m - 1e-6:
             robot.step(BOTH)
         self.teach.cancel_goal()
         return self.result(self.teach)

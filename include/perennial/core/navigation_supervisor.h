@@ -61,6 +61,9 @@ class NavigationSupervisor {
   /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
   /// "odometry", ...
   const NavigationStatus& watch(double now_s, const std::string& missing, const MotionPermit& permit);
+  /// Before the first image to drive by: the robot stands and is busy with what it has, so nothing is
+  /// missing. `doing`: for a person; it stays the reason for starting.
+  const NavigationStatus& prepare(double now_s, const std::string& doing, const MotionPermit& permit);
   /// Images came that cannot be used, and why; empty: they can again.
   void setImageProblem(const std::string& problem) { image_problem_ = problem; }
 
@@ -89,6 +92,7 @@ class NavigationSupervisor {
   double newest_s_ = 0.0;  ///< newest time heard of
   double seen_s_ = 0.0;    ///< stamp of the newest image used, or of the goal
   bool seen_any_ = false;
+  std::string starting_;  ///< reason for a robot that has not seen anything yet
   Sight sight_;
   int sights_in_a_row_ = 0;    ///< newest images that were recognised, counted up to sights_to_trust
   double blind_from_m_ = 0.0;  ///< travelled distance where the path was last recognised for certain
