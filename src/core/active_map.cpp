@@ -52,6 +52,10 @@ void ActiveMapWindow::add(ActiveMap map) {
     maps_[map.index - maps_.front().index] = std::move(map);
     return;
   }
+  if (!maps_.empty() && map.index + 1 == maps_.front().index) {
+    maps_.push_front(std::move(map));
+    return;
+  }
   if (!maps_.empty() && map.index != maps_.back().index + 1) {
     maps_.clear();
   }
@@ -72,6 +76,13 @@ const ActiveMap* ActiveMapWindow::nearest(double distance_m) const {
     return nullptr;
   }
   return &*best;
+}
+
+std::optional<std::uint32_t> ActiveMapWindow::firstBeyond(double distance_m) const {
+  if (maps_.empty() || maps_.front().index == 0 || distance_m >= maps_.front().distance_m) {
+    return std::nullopt;
+  }
+  return maps_.front().index;
 }
 
 const ActiveMap* ActiveMapWindow::find(std::uint32_t index) const {

@@ -18,6 +18,8 @@ constexpr std::size_t kImagesKept = 30;
 /// Real time to wait for simulated time to begin.
 const ros::WallDuration kClockPatience(5.0);
 const ros::Duration kWatchPeriod(0.1);
+/// Local maps asked for at once when a person backs the robot.
+constexpr std::size_t kFetchedBehind = 20;
 
 }  // namespace
 
@@ -338,6 +340,21 @@ void RepeatNavigator::followHand(double travelled_m) {
   const bool backwards = odometer_.newest() && odometer_.newest()->forward_m_s < 0.0;
   if (backwards && gate_.permit().kind == MotionPermit::Kind::kManual) {
     run_->session->shift(-2.0 * (travelled_m - run_->travelled_m));
+    fetchLocalMapsBehind(travelled_m);
+  }
+}
+
+/// Local maps that were passed have been let go, and the manager sends none twice by itself.
+void RepeatNavigator::fetchLocalMapsBehind(double travelled_m) {
+  while (const auto first = run_->session->backedBefore(travelled_m)) {
+    const std::size_t count = std::min<std::size_t>(*first, kFetchedBehind);
+    std::vector<ActiveMap> maps = traversals_.localMaps(*first - count, count);
+    if (maps.size() != count) {
+      throw MapError("map_manager did not send the local maps before the " + std::to_string(*first) + "th");
+    }
+    for (auto map = maps.rbegin(); map != maps.rend(); ++map) {
+      run_->session->add(std::move(*map));
+    }
   }
 }
 

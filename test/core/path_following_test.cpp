@@ -162,6 +162,23 @@ TEST(ActiveMapWindow, forgetsWhatLiesBehindAndStartsAnewAfterAGap) {
   EXPECT_EQ(window.size(), 1U);
 }
 
+TEST(ActiveMapWindow, takesWhatItForgotAgain) {
+  ActiveMapWindow window;
+  window.reset(100);
+  EXPECT_FALSE(window.firstBeyond(0.0));
+  for (std::uint32_t i = 30; i < 50; ++i) {
+    window.add(mapAt(i, 0.2 * i));
+  }
+  EXPECT_FALSE(window.firstBeyond(6.0));
+  EXPECT_EQ(window.firstBeyond(5.9), 30U);
+  for (std::uint32_t i = 30; i-- > 0;) {
+    window.add(mapAt(i, 0.2 * i));
+  }
+  EXPECT_EQ(window.size(), 50U);
+  EXPECT_EQ(window.nearest(1.0)->index, 5U);
+  EXPECT_FALSE(window.firstBeyond(-1.0)) << "nothing lies before the first of the path";
+}
+
 TEST(AlongPath, findsTheVertexOfAParabola) {
   for (double vertex = -0.09; vertex <= 0.07; vertex += 0.01) {  // so that the middle one has most
     const auto evidence = [&](double d) {

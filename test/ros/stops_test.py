@@ -173,6 +173,15 @@ class Stops(unittest.TestCase):
         self.assert_stands("by hand until")
         self.assert_goes_on(10)
 
+    def test_a_person_backs_the_robot_far(self):
+        """Beyond the local maps that are kept: 2 m."""
+        self.stack.drive(lambda: self.robot.x > 0.75 * LENGTH_M)
+        begun_at = self.robot.x
+        self.drive_by_hand(-0.5, 80)
+        self.assertLess(self.robot.x, begun_at - 3.0)
+        self.assert_goes_on(12)
+        self.assertAlmostEqual(self.stack.states[-1].distance_m, self.robot.x, delta=0.3)
+
     def test_another_program_commands_the_robot(self):
         command = Twist()
         command.linear.x = 0.2

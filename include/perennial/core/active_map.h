@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "perennial/core/feature.h"
@@ -54,14 +55,17 @@ class ActiveMapWindow {
   /// `path_size`: number of local maps of the whole path. Forgets everything held.
   void reset(std::size_t path_size);
 
-  /// Maps must come in order of their index; one that is held already is replaced, one after a gap starts
-  /// anew.
+  /// Maps must come in order of their index; one that is held already is replaced, the one before the first
+  /// is put in front, one after a gap starts anew.
   void add(ActiveMap map);
 
   /// The local map nearest in distance; of two equally near the earlier one. nullptr when that map is not
   /// among those held: when the nearest one held is the first or last of them and a nearer one may exist
   /// beyond.
   const ActiveMap* nearest(double distance_m) const;
+
+  /// Index of the first local map held, when one before it may be nearer to this distance.
+  std::optional<std::uint32_t> firstBeyond(double distance_m) const;
 
   /// The local map with this index; nullptr when it is not held.
   const ActiveMap* find(std::uint32_t index) const;

@@ -65,6 +65,12 @@ class RepeatSession {
   /// Whether the local map for this place has come.
   bool ready(double travelled_m) const { return window_.nearest(distance(travelled_m)) != nullptr; }
 
+  /// Index of the first local map held, when a robot that was backed stands before it: those in front of it
+  /// are to be added again, from the last to the first.
+  std::optional<std::uint32_t> backedBefore(double travelled_m) const {
+    return window_.firstBeyond(distance(travelled_m));
+  }
+
   /// Throws ImageError when an image differs in size or encoding from those the map was taught with.
   void requireSuitable(const cv::Mat& image, const std::string& encoding) const;
 

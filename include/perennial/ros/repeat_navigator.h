@@ -57,6 +57,7 @@ class RepeatNavigator {
   bool registerFront(double travelled_m);
   void process(const sensor_msgs::ImageConstPtr& image, double travelled_m);
   void followHand(double travelled_m);
+  void fetchLocalMapsBehind(double travelled_m);
   void drive(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image);
   void report(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image);
   void publishFeedback(const NavigationStep* step = nullptr);
