@@ -1,7 +1,7 @@
 // When a sender is taken for one that was started anew.
-#include <gtest/gtest.h>
-
 #include "perennial/core/restart_watch.h"
+
+#include <gtest/gtest.h>
 
 namespace perennial {
 namespace {

@@ -11,12 +11,12 @@ namespace perennial {
 
 struct SupervisorSettings {
   double max_blind_distance_m = 3.0;  ///< driven by odometry alone, at most; then the robot holds
-  int sights_to_trust = 3;  ///< so many images recognised in a row end being blind; fewer may be chance
-  double hold_timeout_s = 60.0;       ///< holding for so long: the goal fails
-  double blind_speed = 0.5;           ///< share of the taught speed while the view is not recognised
-  double least_speed = 0.4;           ///< share of the taught speed with the lowest confidence
-  double full_confidence = 0.9;       ///< from this confidence on the taught speed is driven
-  int frozen_images = 10;             ///< so many identical images on the way: the camera is frozen; 0: never
+  int sights_to_trust = 3;        ///< so many images recognised in a row end being blind; fewer may be chance
+  double hold_timeout_s = 60.0;   ///< holding for so long: the goal fails
+  double blind_speed = 0.5;       ///< share of the taught speed while the view is not recognised
+  double least_speed = 0.4;       ///< share of the taught speed with the lowest confidence
+  double full_confidence = 0.9;   ///< from this confidence on the taught speed is driven
+  int frozen_images = 10;         ///< so many identical images on the way: the camera is frozen; 0: never
   double sensor_timeout_s = 0.5;  ///< nothing seen for so long: stopped. Not in the group; as the node's own
   double give_up_s = 10.0;        ///< nothing seen for so long: failed. Not in the group; as the node's own
 

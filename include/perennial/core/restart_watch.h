@@ -5,9 +5,10 @@
 
 namespace perennial {
 
-/// Notices that the sender of a stream of messages was started anew, by the numbers that each sender counts from
-/// its own start. What such a sender measures since then, the way of an odometry, does not continue what the one
-/// before has measured. Numbers may be left out and may wrap; a sender that does not count is never noticed.
+/// Notices that the sender of a stream of messages was started anew, by the numbers that each sender counts
+/// from its own start. What such a sender measures since then, the way of an odometry, does not continue what
+/// the one before has measured. Numbers may be left out and may wrap; a sender that does not count is never
+/// noticed.
 class RestartWatch {
  public:
   /// Whether a message with this number comes from a sender that was started after the last message.

@@ -13,10 +13,10 @@ namespace perennial {
 ///
 /// The robot moves only while it is connected, no emergency stop is set, the rest of the system is there, and
 /// a command is younger than the time-out. When one of these fails the velocity is zero at once, without
-/// braking gently, and it stays zero until a *fresh* command: one that came after the cause had gone, and after
-/// others that have come since then: a bad network holds commands back and delivers them late, a few at once.
-/// Times are seconds of one clock of the caller's; a clock that goes backwards makes every command stale. Not
-/// thread-safe.
+/// braking gently, and it stays zero until a *fresh* command: one that came after the cause had gone, and
+/// after others that have come since then: a bad network holds commands back and delivers them late, a few at
+/// once. Times are seconds of one clock of the caller's; a clock that goes backwards makes every command
+/// stale. Not thread-safe.
 class MotionGate {
  public:
   /// `command_timeout_s`: how long a command holds. `command_settle_s`: after a pause, for how long commands
