@@ -11,6 +11,9 @@ add_rostest(ros/two_machines.test
   ARGS folder:=${scratch}/two_machines
   DEPENDENCIES cameleon_driver_node cameleon_simulator_node map_manager_node perennial_strategies repeat_navigator_node
                teach_recorder_node)
+add_rostest(ros/drivers/robot.test
+  ARGS folder:=${scratch}/robot
+  DEPENDENCIES map_manager_node perennial_strategies repeat_navigator_node teach_recorder_node teleop_node)
 add_rostest(ros/drivers/check_steering.test DEPENDENCIES check_steering_node)
 if(TARGET tara_camera_node)
   perennial_gtest(tara_devices_test ros/drivers/tara_devices_test.cpp)
