@@ -31,8 +31,7 @@ CameleonServer::CameleonServer(std::string address, int port) : address_(std::mo
 
 void CameleonServer::listen() {
   try {
-    const tcp::endpoint endpoint(boost::asio::ip::make_address(address_),
-                                 static_cast<unsigned short>(port_));
+    const tcp::endpoint endpoint(boost::asio::ip::make_address(address_), static_cast<unsigned short>(port_));
     acceptor_ = tcp::acceptor(io_, endpoint, true);
     acceptor_.non_blocking(true);
     port_ = acceptor_.local_endpoint().port();
