@@ -33,6 +33,9 @@ endif()
 add_rostest(ros/two_machines.test
   ARGS folder:=${scratch}/two_machines
   DEPENDENCIES ${stack_nodes} ${cameleon_nodes})
+add_rostest(ros/drivers/robot.test
+  ARGS folder:=${scratch}/robot
+  DEPENDENCIES ${stack_nodes} teleop_node)
 if(TARGET tara_camera_node)
   add_rostest(ros/drivers/killed.test
     ARGS folder:=${scratch}/killed

@@ -24,6 +24,13 @@ using RepeatClient = actionlib::SimpleActionClient<perennial_nav::RepeatAction>;
 /// image.
 constexpr std::size_t kUnanswered = 4;
 const ros::WallDuration kClockInterval(0.1);
+/// Never a topic that a robot's driver listens to.
+constexpr const char* kCommandsOfBag = "bag/cmd_vel";
+
+/// Whatever its name: there may be a robot on this master.
+bool movesRobots(const rosbag::ConnectionInfo& connection) {
+  return connection.datatype == "geometry_msgs/Twist" || connection.datatype == "geometry_msgs/TwistStamped";
+}
 
 }  // namespace
 
@@ -81,12 +88,15 @@ void BagPlayer::requireTopics() const {
 void BagPlayer::advertise() {
   for (const rosbag::ConnectionInfo* connection : rosbag::View(bag_).getConnections()) {
     const std::string& topic = connection->topic;
-    const bool replaced =
-        topic == "/clock" || (settings_.mode == "repeat" && topic == settings_.command_topic);
-    if (replaced || publishers_.count(topic) > 0) {
+    const bool commands = topic == settings_.command_topic;
+    const bool kept_back =
+        topic == "/clock" || (commands ? settings_.mode == "repeat" : movesRobots(*connection));
+    if (kept_back || publishers_.count(topic) > 0) {
       continue;
     }
-    ros::AdvertiseOptions options(topic, 0, connection->md5sum, connection->datatype, connection->msg_def);
+    const std::string published = commands ? kCommandsOfBag : topic;
+    ros::AdvertiseOptions options(published, 0, connection->md5sum, connection->datatype,
+                                  connection->msg_def);
     publishers_[topic] = nh_.advertise(options);
   }
 }

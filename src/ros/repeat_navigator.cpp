@@ -7,6 +7,7 @@
 #include "perennial/core/error.h"
 #include "perennial/core/human_text.h"
 #include "perennial/ros/conversions.h"
+#include "perennial/ros/focal_length.h"
 
 namespace perennial {
 namespace {
@@ -320,7 +321,7 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
     seekPlace(image, grey, travelled_m);
     return;
   }
-  run_->session->setFocalLength(focalLength(grey.cols));
+  run_->session->setFocalLength(focalLength(camera_info_, grey.cols));
   run_->session->stepInto(image->header.stamp.toSec(), travelled_m, grey, step_);
   drive(step_, image);
   if (!run_) {
@@ -447,13 +448,6 @@ void RepeatNavigator::publishState(const ros::Time& stamp, const NavigationStep*
 
 void RepeatNavigator::acknowledge(const sensor_msgs::ImageConstPtr& image) {
   reporter_.processed(image->header, run_ != nullptr, gate_.newest());
-}
-
-std::optional<double> RepeatNavigator::focalLength(int image_width) const {
-  if (!camera_info_ || camera_info_->K[0] <= 0.0 || camera_info_->width == 0) {
-    return std::nullopt;
-  }
-  return camera_info_->K[0] * image_width / camera_info_->width;
 }
 
 }  // namespace perennial

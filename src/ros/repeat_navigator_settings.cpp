@@ -3,6 +3,9 @@
 #include <string>
 #include <vector>
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include "perennial/core/error.h"
 #include "perennial/ros/parameters.h"
 
 namespace perennial {
@@ -14,6 +17,19 @@ const std::vector<std::string> kGroups{"extraction",   "registration", "steering
 
 /// Of a robot of which nothing is known.
 const VelocityLimits kLimits{1.5, 1.5, 1.5, 10.0, 2.0, 4.0, 5.0};
+
+/// The defaults know nothing of who watches over this robot. A node that is started anew after the master was,
+/// and found none of what the launch file had set, must not drive with them.
+void requireParameters(const ros::NodeHandle& private_nh) {
+  XmlRpc::XmlRpcValue all;
+  const bool set = private_nh.getParam(private_nh.getNamespace(), all) &&
+                   all.getType() == XmlRpc::XmlRpcValue::TypeStruct && all.size() > 0;
+  if (!set) {
+    throw ParameterError("none of the parameters of " + private_nh.getNamespace() +
+                         " is set; a ROS master that was restarted has forgotten them: start the launch file "
+                         "anew. To run with the defaults on purpose, set one: _every_image:=false");
+  }
+}
 
 VelocityLimits loadLimits(const ros::NodeHandle& private_nh) {
   ParameterReader reader = groupReader(private_nh, "limits");
@@ -34,6 +50,7 @@ RepeatNavigatorSettings RepeatNavigatorSettings::load(ParameterReader& reader) {
 }
 
 RepeatNavigatorSettings RepeatNavigatorSettings::load(const ros::NodeHandle& private_nh) {
+  requireParameters(private_nh);
   RepeatNavigatorSettings settings = loadNode<RepeatNavigatorSettings>(private_nh, kGroups);
   settings.repeat = {loadGroup<ExtractionSettings>(private_nh, "extraction"),
                      loadGroup<RegistrationSettings>(private_nh, "registration"),

@@ -6,8 +6,10 @@
 import glob
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 COMMAND = re.compile(r"roslaunch perennial_nav (\w+\.launch)((?:[ \t]+\[?\w+:=[^\s\]`]*\]?|[ \t]*\\\n[ \t]*)*)")
 
@@ -26,13 +28,27 @@ def examples(repository):
     return sorted(found)
 
 
+def fill(folder, repository, arguments):
+    """The folder for $PWD gets the configurations that are somebody's own: copies of the navigator's."""
+    for argument in arguments:
+        name, value = argument.split(":=", 1)
+        if name == "config" and value.startswith("$PWD/"):
+            shutil.copy(os.path.join(repository, "config", "repeat_navigator.yaml"), value.replace("$PWD", folder))
+
+
 def main(repository):
+    with tempfile.TemporaryDirectory() as folder:
+        return check(repository, folder)
+
+
+def check(repository, folder):
     commands = examples(repository)
     if len(commands) < 5:
         sys.exit("only %d commands found: the pattern does not fit the documents" % len(commands))
     failed = 0
     for path, launch, arguments in commands:
-        command = ["roslaunch", "--nodes", "perennial_nav", launch] + [a.replace("$PWD", "/tmp") for a in arguments]
+        fill(folder, repository, arguments)
+        command = ["roslaunch", "--nodes", "perennial_nav", launch] + [a.replace("$PWD", folder) for a in arguments]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         nodes = [line for line in done.stdout.splitlines() if line.startswith("/")]
         good = done.returncode == 0 and nodes

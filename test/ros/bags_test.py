@@ -10,11 +10,14 @@ import unittest
 import zlib
 
 import numpy as np
+import rosbag
+import rosgraph
 import rospkg
 import rospy
 import rostest
 import yaml
-from perennial_nav.msg import Registration
+from geometry_msgs.msg import Twist
+from perennial_nav.msg import Processed, Registration
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from fake_robot import view, wait_until  # noqa: E402
@@ -58,6 +61,39 @@ def call(*words):
     if done.returncode != 0:
         raise AssertionError("%s failed:\n%s" % (" ".join(words), done.stdout))
     return done.stdout
+
+
+def add_commands(path):
+    """To a bag: commands that drive, on the usual topic and on another one."""
+    command = Twist()
+    command.linear.x = 0.5
+    with rosbag.Bag(path, "a") as bag:
+        begin, end = int(bag.get_start_time()), int(bag.get_end_time())
+        for second in range(begin, end):
+            for topic in ("/cmd_vel", "/base/cmd_vel"):
+                bag.write(topic, command, rospy.Time(second))
+
+
+class CommandWatch:
+    """Who publishes and who hears commands, seen whenever a node is done with an image."""
+
+    def __init__(self):
+        self.publishers, self.listeners, self.heard = {}, {}, []
+        self.subscribers = [
+            rospy.Subscriber("/processed", Processed, self.on_processed, queue_size=1000),
+            rospy.Subscriber("/bag/cmd_vel", Twist, self.heard.append, queue_size=1000),
+        ]
+
+    def on_processed(self, _):
+        state = rosgraph.Master("/bags_test").getSystemState()
+        for found, topics in zip((self.publishers, self.listeners), state):
+            for topic, nodes in topics:
+                if "cmd_vel" in topic:
+                    found.setdefault(topic, set()).update(set(nodes) - {rospy.get_name()})
+
+    def end(self):
+        for subscriber in self.subscribers:
+            subscriber.unregister()
 
 
 def shipped_parameters():
@@ -183,6 +219,22 @@ class Bags(unittest.TestCase):
             self.assertEqual(summary["registrations"], 12)
             self.assertEqual(summary["within_px"]["35"], 1)
             self.assertIsNone(summary["ms_per_registration"])
+
+    def test_a_bag_commands_no_robot(self):
+        dataset = os.path.join(FOLDER, "commanded")
+        make_dataset(dataset)
+        bag = os.path.join(FOLDER, "commanded.bag")
+        call("rosrun", "perennial_nav", "dataset_to_bag", dataset, "first", bag)
+        add_commands(bag)
+        for launch, publisher in (("teach.launch", "/bag_player"), ("repeat.launch", "/repeat_navigator")):
+            watch = CommandWatch()
+            call("roslaunch", "perennial_nav", launch, "map:=commanded", "map_folder:=" + os.path.join(FOLDER, "maps"),
+                 "bag:=" + bag)  # fmt: skip
+            watch.end()
+            self.assertEqual(watch.publishers, {"/bag/cmd_vel": {publisher}}, launch)
+            self.assertTrue(any(command.linear.x > 0.1 for command in watch.heard), launch)
+            if launch == "teach.launch":
+                self.assertIn("/teach_recorder", watch.listeners["/bag/cmd_vel"])
 
     def test_a_bag_without_images(self):
         dataset = os.path.join(FOLDER, "made_up_2")

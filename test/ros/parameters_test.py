@@ -77,6 +77,11 @@ class Parameters(unittest.TestCase):
     def test_missing_map_folder(self):
         self.assertIn("map_folder", self.refused("teach_recorder_node"))
 
+    def test_a_navigator_without_any_parameter(self):
+        """As respawn starts it after the master was restarted: without the dead man's switch that was configured."""
+        output = self.refused("repeat_navigator_node")
+        self.assertIn("none of the parameters of /repeat_navigator_refused is set", output)
+
     def test_shipped_configurations_load(self):
         folder = os.path.join(rospkg.RosPack().get_path("perennial_nav"), "config")
         names = [os.path.splitext(os.path.basename(file))[0] for file in glob.glob(os.path.join(folder, "*.yaml"))]

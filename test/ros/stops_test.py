@@ -20,7 +20,9 @@ from fake_robot import HEIGHT, WIDTH, FakeRobot, wait_until  # noqa: E402
 from stack import BOTH, LENGTH_M, Stack  # noqa: E402
 
 FOLDER = ""  # of the maps; from the command line
-LIMIT_MPS, ACCELERATION_MPS2, LONGEST_STEP_S = 1.5, 2.0, 0.25  # as in repeat_navigator.yaml and command_gate.cpp
+LIMIT_MPS, ACCELERATION_MPS2, BRAKING_MPS2 = 1.5, 2.0, 4.0  # as in repeat_navigator.yaml
+TURN_LIMIT_RADPS, TURN_ACCELERATION_RADPS2 = 1.5, 5.0
+STEP_S = 0.05  # between commands by hand: as in command_gate.cpp
 
 
 class GuardedRobot(FakeRobot):
@@ -157,9 +159,9 @@ class Stops(unittest.TestCase):
         self.robot.silent = set()
         self.assert_goes_on(2)
 
-    def drive_by_hand(self, forward, steps):
+    def drive_by_hand(self, forward, steps, turn=0.0):
         command = Twist()
-        command.linear.x = forward
+        command.linear.x, command.angular.z = forward, turn
         for _ in range(steps):
             self.by_hand.publish(command)
             self.robot.step(BOTH)
@@ -311,14 +313,26 @@ class Stops(unittest.TestCase):
     def test_limits_hold_whatever_is_asked_for(self):
         with self.robot.lock:
             first = len(self.robot.commands)
-        for forward in (100.0, -100.0):
-            self.drive_by_hand(forward, 20)
+        for wanted in (100.0, -100.0):
+            self.drive_by_hand(wanted, 20, turn=wanted)
         with self.robot.lock:
-            speeds = [command.linear.x for command in self.robot.commands[first:]]
+            commands = self.robot.commands[first:]
+        speeds = [command.linear.x for command in commands]
+        turns = [command.angular.z for command in commands]
         self.assertGreater(max(speeds), 0.9 * LIMIT_MPS, "it did drive fast")
+        self.assertLess(min(speeds), -0.3 * LIMIT_MPS, "and back")
+        self.assertGreater(max(turns), 0.9 * TURN_LIMIT_RADPS)
+        self.assertLess(min(turns), -0.9 * TURN_LIMIT_RADPS)
         self.assertLessEqual(max(map(abs, speeds)), LIMIT_MPS + 1e-9)
-        speeding = [after - before for before, after in zip(speeds, speeds[1:]) if abs(after) > abs(before)]
-        self.assertLessEqual(max(map(abs, speeding)), ACCELERATION_MPS2 * LONGEST_STEP_S + 1e-9)
+        self.assertLessEqual(max(map(abs, turns)), TURN_LIMIT_RADPS + 1e-9)
+        changes = [(before, after - before) for before, after in zip(speeds, speeds[1:]) if after != 0.0]
+        faster = [abs(change) for before, change in changes if before * change >= 0.0]
+        slower = [abs(change) for before, change in changes if before * change < 0.0]
+        self.assertLessEqual(max(faster), ACCELERATION_MPS2 * STEP_S + 1e-9)
+        self.assertGreater(len(slower), 3, "it brakes, and does not stop at once")
+        self.assertLessEqual(max(slower), BRAKING_MPS2 * STEP_S + 1e-9)
+        turning = [abs(after - before) for before, after in zip(turns, turns[1:]) if after != 0.0]
+        self.assertLessEqual(max(turning), TURN_ACCELERATION_RADPS2 * STEP_S + 1e-9)
 
     def test_diagnostics_tell_the_state_and_why(self):
         seen = []

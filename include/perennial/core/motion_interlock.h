@@ -14,7 +14,7 @@ struct DeadManSettings {
   enum class Kind { kNone, kJoy, kHeartbeat };
 
   Kind kind = Kind::kNone;
-  int button = 4;          ///< of the joystick, to be held down
+  int button = 5;          ///< of the joystick, to be held down; teleop_node has 4
   double timeout_s = 0.5;  ///< without a sign of life for so long the robot stops
 
   /// Keys as the members are called; kind: none, joy, heartbeat. Throws ParameterError.

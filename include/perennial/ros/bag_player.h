@@ -26,9 +26,8 @@ struct BagPlayerSettings {
   bool localise = false;          ///< repeat: that place is found by the images instead
   std::string image_topic = "/camera/image_raw";
   std::string odom_topic = "/odom";
-  std::string command_topic =
-      "/cmd_vel";            ///< not played in mode repeat, where the navigator publishes its own
-  double patience_s = 30.0;  ///< real time to wait for the nodes before giving up
+  std::string command_topic = "/cmd_vel";  ///< the one that drove; see BagPlayer
+  double patience_s = 30.0;                ///< real time to wait for the nodes before giving up
 
   static BagPlayerSettings load(ParameterReader& reader);
 };
@@ -36,6 +35,9 @@ struct BagPlayerSettings {
 /// Plays a bag to the teach recorder or the repeat navigator as fast as they keep up, losing no image: it
 /// publishes /clock from the bag's time and goes on only while no more than a few images are unanswered on
 /// `processed`. Sends the goal before the first message and ends it after the last. One thread.
+///
+/// Moves no robot: the bag's commands are published on `bag/cmd_vel`, in mode repeat not at all (there the
+/// navigator publishes its own), and other velocities of the bag never.
 class BagPlayer {
  public:
   /// Throws ParameterError, and Error for a bag that cannot be read or lacks the image or odometry topic.

@@ -83,7 +83,6 @@ class RepeatNavigator {
   std::string missing() const;
   void publishState(const ros::Time& stamp, const NavigationStep* step = nullptr);
   void acknowledge(const sensor_msgs::ImageConstPtr& image);
-  std::optional<double> focalLength(int image_width) const;
 
   ros::NodeHandle nh_;
   RepeatNavigatorSettings settings_;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include <boost/asio/ip/address.hpp>
 
 #include "perennial/core/error.h"
 
@@ -22,16 +25,18 @@ std::array<std::uint8_t, size> takeFront(std::deque<std::uint8_t>& bytes) {
 
 }  // namespace
 
-CameleonServer::CameleonServer(int port) : port_(port) { listen(); }
+CameleonServer::CameleonServer(std::string address, int port) : address_(std::move(address)), port_(port) {
+  listen();
+}
 
 void CameleonServer::listen() {
   try {
-    const tcp::endpoint endpoint(tcp::v4(), static_cast<unsigned short>(port_));
+    const tcp::endpoint endpoint(boost::asio::ip::make_address(address_), static_cast<unsigned short>(port_));
     acceptor_ = tcp::acceptor(io_, endpoint, true);
     acceptor_.non_blocking(true);
     port_ = acceptor_.local_endpoint().port();
   } catch (const boost::system::system_error& error) {
-    throw Error("cannot listen on port " + std::to_string(port_) + ": " + error.what());
+    throw Error("cannot listen on " + address_ + ", port " + std::to_string(port_) + ": " + error.what());
   }
 }
 

@@ -29,6 +29,7 @@ double wrapAngle(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 CameleonSimulatorSettings CameleonSimulatorSettings::load(ParameterReader& reader) {
   CameleonSimulatorSettings settings;
   settings.port = reader.integer("port", settings.port, 0, 65535);
+  settings.bind_address = reader.text("bind_address", settings.bind_address);
   settings.track_distance_m = reader.real("track_distance_m", settings.track_distance_m, 0.05, 5.0);
   CameleonScale& scale = settings.scale;
   scale.forward_per_mps = reader.real("forward_per_mps", scale.forward_per_mps, 1.0, 1e5);
@@ -44,7 +45,7 @@ CameleonSimulatorSettings CameleonSimulatorSettings::load(ParameterReader& reade
 CameleonSimulator::CameleonSimulator(ros::NodeHandle nh, ros::NodeHandle private_nh,
                                      const CameleonSimulatorSettings& settings)
     : settings_(settings),
-      server_(settings.port),
+      server_(settings.bind_address, settings.port),
       robot_(settings.scale, settings.track_distance_m),
       state_publisher_(private_nh.advertise<nav_msgs::Odometry>("state", 200)) {
   robot_.setBattery(settings_.battery_percent);
@@ -61,7 +62,7 @@ CameleonSimulator::CameleonSimulator(ros::NodeHandle nh, ros::NodeHandle private
   } else {
     timer_ = std::make_unique<TickTimer>(nh, CameleonRobot::kLoopPeriod_s, [this] { loop(); });
   }
-  ROS_INFO("A simulated CAMELEON listens on port %d.", server_.port());
+  ROS_INFO("A simulated CAMELEON listens on %s, port %d.", settings_.bind_address.c_str(), server_.port());
 }
 
 void CameleonSimulator::defineFaults() {

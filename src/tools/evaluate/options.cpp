@@ -11,8 +11,8 @@ const char* const kEvaluateUsage =
     R"(usage: evaluate INPUT --out DIR (--strategy NAME [--set KEY=VALUE]... | --sweep FILE.yaml [--set KEY=VALUE]...)
 
 Teaches every place of a data set from its first traversal, then registers every later one
-in order of time and lets the map learn from it. Writes errors.csv, lives.csv and summary.json to DIR, or, for a sweep,
-to a folder of DIR for each run. Runs that are complete already are not repeated.
+in order of time and lets the map learn from it. Writes errors.csv, lives.csv, cost.csv and
+summary.json to DIR, or, for a sweep, to a folder of DIR for each run. Runs that are complete already are not repeated.
 
 INPUT is a folder with manifest.csv, or with maps of the reference system, or one or more bags (FILE.bag ...) with:
 

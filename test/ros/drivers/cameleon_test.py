@@ -2,6 +2,7 @@
 """The real driver against the simulated robot: driving, stopping, and every fault of the wire."""
 import math
 import os
+import socket
 import sys
 import unittest
 
@@ -109,6 +110,12 @@ class CameleonTest(unittest.TestCase):
         x, y = end[0] - begin[0], end[1] - begin[1]
         c, s = math.cos(begin[2]), math.sin(begin[2])
         return c * x + s * y, -s * x + c * y, math.remainder(end[2] - begin[2], 2.0 * math.pi)
+
+    def test_the_simulator_serves_this_computer_only(self):
+        """By default, as another address of this computer shows: it would be served by one that listens on all."""
+        port = rospy.get_param("cameleon_simulator/port")
+        with self.assertRaises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.2", port), 10.0).close()
 
     def test_drives_and_tells_where_it_is(self):
         true_begin, begin = self.stand_still()

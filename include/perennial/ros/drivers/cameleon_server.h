@@ -15,8 +15,9 @@ namespace perennial {
 /// The robot's end of the TCP connection, for the simulator: one client at a time, polled, never waiting.
 class CameleonServer {
  public:
-  /// Listens on all addresses; port 0 takes a free one. Throws Error when the port is taken.
-  explicit CameleonServer(int port);
+  /// Listens on this address of the computer ("0.0.0.0": on all); port 0 takes a free one. Throws Error when
+  /// the address is none or the port is taken.
+  CameleonServer(std::string address, int port);
 
   int port() const { return port_; }
 
@@ -45,6 +46,7 @@ class CameleonServer {
   boost::asio::io_context io_;
   boost::asio::ip::tcp::acceptor acceptor_{io_};
   boost::asio::ip::tcp::socket client_{io_};
+  std::string address_;
   int port_;
   bool has_client_ = false;
   bool greeted_ = false;

@@ -25,6 +25,7 @@ namespace perennial {
 
 struct CameleonSimulatorSettings {
   int port = 50004;
+  std::string bind_address = "127.0.0.1";  ///< to listen on; "0.0.0.0": all of the computer's
   double track_distance_m = 0.40;
   CameleonScale scale;
   int battery_percent = 80;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include <sensor_msgs/CameraInfo.h>
+
+namespace perennial {
+
+/// The focal length in pixels of images of this width; a camera may deliver them in another size than it was
+/// calibrated with. Empty without a calibration.
+inline std::optional<double> focalLength(const sensor_msgs::CameraInfoConstPtr& info, int image_width) {
+  if (!info || info->K[0] <= 0.0 || info->width == 0) {
+    return std::nullopt;
+  }
+  return info->K[0] * image_width / info->width;
+}
+
+}  // namespace perennial
