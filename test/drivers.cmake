@@ -7,12 +7,20 @@ endforeach()
 foreach(name cameleon cameleon_stop teleop)
   add_rostest(ros/drivers/${name}.test DEPENDENCIES cameleon_driver_node cameleon_simulator_node teleop_node)
 endforeach()
+add_rostest(ros/two_machines.test
+  ARGS folder:=${scratch}/two_machines
+  DEPENDENCIES cameleon_driver_node cameleon_simulator_node map_manager_node perennial_strategies repeat_navigator_node
+               teach_recorder_node)
 add_rostest(ros/drivers/check_steering.test DEPENDENCIES check_steering_node)
 if(TARGET tara_camera_node)
   perennial_gtest(tara_devices_test ros/drivers/tara_devices_test.cpp)
   if(TARGET tara_devices_test)
     target_link_libraries(tara_devices_test perennial_tara)
   endif()
+  add_rostest(ros/drivers/killed.test
+    ARGS folder:=${scratch}/killed
+    DEPENDENCIES cameleon_driver_node cameleon_simulator_node map_manager_node perennial_strategies perennial_tara_preload
+                 repeat_navigator_node tara_camera_node tara_simulator_node teach_recorder_node)
   foreach(name tara tara_setup)
     add_rostest(ros/drivers/${name}.test DEPENDENCIES tara_camera_node tara_simulator_node perennial_tara_preload)
   endforeach()

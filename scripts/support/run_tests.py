@@ -22,10 +22,11 @@ TIMEOUT_S = 1800
 
 
 class Count:
-    """Numbers of test cases, and a line for each that failed."""
+    """Number of test cases that passed, and a line for each that was skipped or failed."""
 
     def __init__(self):
-        self.passed = self.skipped = 0
+        self.passed = 0
+        self.skipped = []
         self.failures = []
 
     def add(self, other):
@@ -61,11 +62,13 @@ def count_cases(path):
     count = Count()
     for case in ElementTree.parse(path).iter('testcase'):
         problems = case.findall('failure') + case.findall('error')
+        skipped = case.findall('skipped')
+        message = next((p.get('message') or p.text or '' for p in problems + skipped), '').strip()
+        line = '%s.%s: %s' % (case.get('classname'), case.get('name'), message)
         if problems:
-            message = problems[0].get('message') or problems[0].text or ''
-            count.failures.append('%s.%s: %s' % (case.get('classname'), case.get('name'), message.strip()))
-        elif case.find('skipped') is not None or case.get('result') == 'skipped' or case.get('status') == 'notrun':
-            count.skipped += 1
+            count.failures.append(line)
+        elif skipped or case.get('result') == 'skipped' or case.get('status') == 'notrun':
+            count.skipped.append(line)
         else:
             count.passed += 1
     return count
@@ -121,7 +124,7 @@ def run(test, logs):
         count = count_results(test, started)
     except ElementTree.ParseError as error:
         count, problem = Count(), 'damaged result: %s' % error
-    if not count.failures and (problem or not count.passed + count.skipped):
+    if not count.failures and (problem or not count.passed + len(count.skipped)):
         count.failures.append('%s: %s' % (test.name, problem or 'left no result'))
     report = '%s  %s (%.1f s)\n' % ('FAILED' if count.failures else 'ok    ', test.name, time.time() - started)
     if count.failures:
@@ -148,8 +151,10 @@ def main(build, pattern=''):
             total.add(run(test, logs))
     for line in total.failures:
         print('FAILED ' + line.splitlines()[0])
+    for line in total.skipped:
+        print('skipped ' + line.splitlines()[0])
     if total.skipped:
-        print('%d skipped' % total.skipped)
+        print('%d skipped' % len(total.skipped))
     print(total)
     sys.exit(1 if total.failures else 0)
 

@@ -19,6 +19,7 @@ SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   SupervisorSettings settings;
   settings.max_blind_distance_m =
       reader.real("max_blind_distance_m", settings.max_blind_distance_m, 0.0, 1e6);
+  settings.sights_to_trust = reader.integer("sights_to_trust", settings.sights_to_trust, 1, 1000);
   settings.hold_timeout_s = reader.real("hold_timeout_s", settings.hold_timeout_s, 0.1, 1e6);
   settings.blind_speed = reader.real("blind_speed", settings.blind_speed, 0.05, 1.0);
   settings.least_speed = reader.real("least_speed", settings.least_speed, 0.05, 1.0);
@@ -60,10 +61,12 @@ void NavigationSupervisor::start(double now_s) {
   newest_s_ = seen_s_ = now_s;
   seen_any_ = false;
   sight_ = {};
+  sights_in_a_row_ = 0;
   blind_from_m_ = blind_m_ = 0.0;
   holding_since_s_.reset();
   image_problem_.clear();
-  set(NavigationMode::kStarting, "waiting for image, odometry and local maps", 0.0);
+  starting_ = "waiting for image, odometry and local maps";
+  set(NavigationMode::kStarting, starting_, 0.0);
 }
 
 const NavigationStatus& NavigationSupervisor::see(double stamp_s, double travelled_m, const Sight& sight,
@@ -89,9 +92,23 @@ const NavigationStatus& NavigationSupervisor::watch(double now_s, const std::str
   return status_;
 }
 
+const NavigationStatus& NavigationSupervisor::prepare(double now_s, const std::string& doing,
+                                                      const MotionPermit& permit) {
+  if (active()) {
+    noteTime(now_s);
+  }
+  if (active()) {
+    seen_s_ = std::max(seen_s_, now_s);
+    starting_ = doing;
+    decide(now_s, "", permit);
+  }
+  return status_;
+}
+
 void NavigationSupervisor::noteSight(double travelled_m, const Sight& sight, const MotionPermit& permit) {
   const bool by_hand = permit.kind == MotionPermit::Kind::kManual;
-  if (sight.recognised || !seen_any_ || by_hand) {
+  sights_in_a_row_ = sight.recognised ? std::min(sights_in_a_row_ + 1, settings_.sights_to_trust) : 0;
+  if (trusted() || !seen_any_ || by_hand) {
     blind_from_m_ = travelled_m;  // what a person drives, a person sees
   }
   seen_any_ = true;
@@ -118,7 +135,7 @@ void NavigationSupervisor::decide(double now_s, const std::string& missing, cons
     return;
   }
   if (!seen_any_) {
-    set(NavigationMode::kStarting, "waiting for image, odometry and local maps", 0.0);
+    set(NavigationMode::kStarting, starting_, 0.0);
     return;
   }
   if (mustHold(now_s, permit)) {
@@ -149,7 +166,7 @@ bool NavigationSupervisor::mustStop(double now_s, const std::string& missing, co
 }
 
 bool NavigationSupervisor::mustHold(double now_s, const MotionPermit& permit) {
-  const bool blind = !sight_.recognised && blind_m_ >= settings_.max_blind_distance_m;
+  const bool blind = !trusted() && blind_m_ >= settings_.max_blind_distance_m;
   if (!blind && permit.kind != MotionPermit::Kind::kHold) {
     return false;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "perennial/core/human_text.h"
 
@@ -11,18 +12,16 @@ namespace {
 
 /// Features of the view that every local map is asked about.
 constexpr std::size_t kStrongest = 100;
-/// Local maps that the whole view is compared with.
-constexpr std::size_t kShortlist = 24;
-/// Neighbouring local maps see the same: only beyond this is another place.
-constexpr double kElsewhere_m = 3.0;
-/// Confidence below which nothing was recognised.
-constexpr double kLeastConfidence = 0.9;
-/// Share of the winner's pairs from which a place is about as likely.
+/// Local maps that follow each other look alike: of each stretch of this length a few stand for all, or those
+/// of one place would leave no room for another.
+constexpr double kStretch_m = 1.0;
+constexpr std::size_t kMapsOfAStretch = 5;
+/// Stretches that the whole view is compared with.
+constexpr std::size_t kStretches = 24;
+/// Share of the winner's pairs from which the other end of a loop is about as likely.
 constexpr double kAboutAsLikely = 0.8;
-/// Share of the winner's pairs with which another place makes it ambiguous.
-constexpr double kRivalShare = 0.6;
 
-FeatureSet strongest(const FeatureSet& view) {
+FeatureSet strongestOf(const FeatureSet& view) {
   std::vector<std::size_t> order(view.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t count = std::min(kStrongest, order.size());
@@ -42,73 +41,123 @@ PlaceGuess refused(std::string reason) {
   return guess;
 }
 
+std::string agreeing(int features) { return std::to_string(features) + " features agree"; }
+
 }  // namespace
 
-PlaceFinder::PlaceFinder(const RegistrationSettings& settings) : registration_(makeRegistration(settings)) {}
-
-PlaceFinder::Candidate PlaceFinder::judge(const ActiveMap& map, const FeatureSet& view) {
-  registerInto(*registration_, map, view, workspace_, result_);
-  const RegistrationResult& result = result_.result;
-  return {&map, result.inliers, result.confidence, result.displacement_px.has_value()};
+LocalisationSettings LocalisationSettings::load(ParameterReader& reader) {
+  LocalisationSettings settings;
+  settings.min_confidence = reader.real("min_confidence", settings.min_confidence, 0.0, 1.0);
+  settings.rival_share = reader.real("rival_share", settings.rival_share, 0.0, 1.0);
+  settings.elsewhere_m = reader.real("elsewhere_m", settings.elsewhere_m, 0.1, 1e3);
+  settings.agreeing_images = reader.integer("agreeing_images", settings.agreeing_images, 1, 100);
+  settings.agreement_m = reader.real("agreement_m", settings.agreement_m, 0.01, 1e3);
+  return settings;
 }
 
-std::vector<PlaceFinder::Candidate> PlaceFinder::likeliest(const FeatureSet& view) {
-  const FeatureSet few = strongest(view);
+PlaceFinder::PlaceFinder(const LocalisationSettings& settings, const RegistrationSettings& registration)
+    : settings_(settings), registration_(makeRegistration(registration)) {}
+
+void PlaceFinder::seek(FeatureSet view) {
+  view_ = std::move(view);
+  strongest_ = strongestOf(view_);
+  stretches_.clear();
+  open_ = {};
+  considered_ = 0;
+}
+
+void PlaceFinder::consider(ActiveMap map) {
+  last_m_ = map.distance_m;
+  if (considered_++ == 0) {
+    first_m_ = map.distance_m;
+  }
+  if (!open_.members.empty() && map.distance_m >= open_.begin_m + kStretch_m) {
+    closeStretch();
+  }
+  if (open_.members.empty()) {
+    open_.begin_m = map.distance_m;
+  }
+  const int inliers = judgeRoughly(map);
+  open_.inliers = std::max(open_.inliers, inliers);
+  open_.members.push_back({std::move(map), inliers});
+  if (open_.members.size() > kMapsOfAStretch) {
+    open_.members.erase(std::min_element(open_.members.begin(), open_.members.end(),
+                                         [](const auto& a, const auto& b) { return a.inliers < b.inliers; }));
+  }
+}
+
+void PlaceFinder::closeStretch() {
+  stretches_.push_back(std::exchange(open_, {}));
+  if (stretches_.size() > kStretches) {
+    stretches_.erase(std::min_element(stretches_.begin(), stretches_.end(),
+                                      [](const auto& a, const auto& b) { return a.inliers < b.inliers; }));
+  }
+}
+
+int PlaceFinder::judgeRoughly(const ActiveMap& map) {
+  registerInto(*registration_, map, strongest_, workspace_, result_);
+  return result_.result.inliers;
+}
+
+PlaceFinder::Candidate PlaceFinder::judge(const ActiveMap& map) {
+  registerInto(*registration_, map, view_, workspace_, result_);
+  const RegistrationResult& result = result_.result;
+  return {map.distance_m, map.index, result.inliers, result.confidence, result.displacement_px.has_value()};
+}
+
+std::vector<PlaceFinder::Candidate> PlaceFinder::likeliest() {
+  closeStretch();
   std::vector<Candidate> candidates;
-  candidates.reserve(maps_.size());
-  for (const ActiveMap& map : maps_) {
-    candidates.push_back(judge(map, few));
+  for (const Stretch& stretch : stretches_) {
+    for (const Stretch::Member& member : stretch.members) {
+      candidates.push_back(judge(member.map));
+    }
   }
-  const auto more = [](const Candidate& a, const Candidate& b) { return a.inliers > b.inliers; };
-  std::stable_sort(candidates.begin(), candidates.end(), more);
-  candidates.resize(std::min(kShortlist, candidates.size()));
-  for (Candidate& candidate : candidates) {
-    candidate = judge(*candidate.map, view);
-  }
-  std::stable_sort(candidates.begin(), candidates.end(), more);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.inliers > b.inliers; });
   return candidates;
 }
 
-bool PlaceFinder::endsOfALoop(const ActiveMap& a, const ActiveMap& b) const {
-  const double first_m = maps_.front().distance_m;
-  const double last_m = maps_.back().distance_m;
-  return std::min(a.distance_m, b.distance_m) <= first_m + kElsewhere_m &&
-         std::max(a.distance_m, b.distance_m) >= last_m - kElsewhere_m;
+/// Whether they are near to each other, straight along the path or across the ends of a loop. Places as near
+/// as that across the ends of a path that is no loop do not look alike, and the question does not arise.
+bool PlaceFinder::samePlace(const Candidate& a, const Candidate& b) const {
+  const double apart_m = std::abs(a.distance_m - b.distance_m);
+  return std::min(apart_m, last_m_ - first_m_ - apart_m) <= settings_.elsewhere_m;
 }
 
-PlaceGuess PlaceFinder::find(const FeatureSet& view) {
-  const std::vector<Candidate> candidates = likeliest(view);
+/// The likeliest candidate; but if that lies at the end of a loop, the one at its beginning when that is
+/// about as likely.
+PlaceFinder::Candidate PlaceFinder::beginningOfLoop(const std::vector<Candidate>& candidates) const {
+  const Candidate& best = candidates.front();
+  const auto beginning = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+    return other.distance_m < best.distance_m - settings_.elsewhere_m && samePlace(other, best) &&
+           other.inliers >= kAboutAsLikely * best.inliers;
+  });
+  return beginning == candidates.end() ? best : *beginning;
+}
+
+PlaceGuess PlaceFinder::guess() {
+  const std::vector<Candidate> candidates = likeliest();
   if (candidates.empty() || !candidates.front().recognised ||
-      candidates.front().confidence < kLeastConfidence) {
+      candidates.front().confidence < settings_.min_confidence) {
     return refused("the view was not recognised anywhere on the path");
   }
-  Candidate best = candidates.front();
-  const auto rival = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-    return std::abs(other.map->distance_m - best.map->distance_m) > kElsewhere_m &&
-           !endsOfALoop(*other.map, *best.map);
-  });
-  for (const Candidate& other :
-       candidates) {  // of the ends of a loop the beginning, if it is about as likely
-    const bool earlier = other.map->distance_m < best.map->distance_m - kElsewhere_m;
-    if (earlier && endsOfALoop(*other.map, *best.map) &&
-        other.inliers >= kAboutAsLikely * candidates.front().inliers) {
-      best = other;
-    }
-  }
+  const Candidate best = beginningOfLoop(candidates);
+  const auto rival = std::find_if(candidates.begin(), candidates.end(),
+                                  [&](const Candidate& other) { return !samePlace(other, best); });
   const int rival_inliers = rival == candidates.end() ? 0 : rival->inliers;
-  if (rival_inliers > kRivalShare * best.inliers) {
-    return refused("ambiguous: it looks like " + humanMetres(best.map->distance_m) + " (" +
-                   std::to_string(best.inliers) + " features agree), but like " +
-                   humanMetres(rival->map->distance_m) + " (" + std::to_string(rival_inliers) + "), too");
+  if (rival_inliers > settings_.rival_share * best.inliers) {
+    return refused("ambiguous: the view looks like " + humanMetres(best.distance_m) + " of the path (" +
+                   agreeing(best.inliers) + "), but like " + humanMetres(rival->distance_m) + " (" +
+                   std::to_string(rival_inliers) + "), too");
   }
   PlaceGuess guess;
   guess.sure = true;
-  guess.distance_m = best.map->distance_m;
-  guess.index = best.map->index;
+  guess.distance_m = best.distance_m;
+  guess.index = best.index;
   guess.inliers = best.inliers;
   guess.certainty = best.confidence * (1.0 - static_cast<double>(rival_inliers) / best.inliers);
-  guess.reason = "at " + humanMetres(guess.distance_m) + " of the path, " + std::to_string(best.inliers) +
-                 " features agree, certainty " + humanNumber(100.0 * guess.certainty, "%");
+  guess.reason = "at " + humanMetres(guess.distance_m) + " of the path, " + agreeing(best.inliers);
   return guess;
 }
 

@@ -34,6 +34,7 @@ BagPlayerSettings BagPlayerSettings::load(ParameterReader& reader) {
   settings.map_name = reader.text("map_name", settings.map_name);
   settings.overwrite = reader.boolean("overwrite", settings.overwrite);
   settings.start_distance_m = reader.real("start_distance_m", settings.start_distance_m, 0.0, 1e7);
+  settings.localise = reader.boolean("localise", settings.localise);
   settings.image_topic = reader.text("image_topic", settings.image_topic);
   settings.odom_topic = reader.text("odom_topic", settings.odom_topic);
   settings.command_topic = reader.text("command_topic", settings.command_topic);
@@ -123,6 +124,7 @@ bool BagPlayer::repeat() {
   goal.map_name = settings_.map_name;
   goal.traversals = 1;
   goal.start_distance_m = settings_.start_distance_m;
+  goal.localise = static_cast<std::uint8_t>(settings_.localise);
   client.sendGoal(goal);
   awaitStart([&] { return client.getState() != actionlib::SimpleClientGoalState::PENDING; });
   play([&] { return client.getState().isDone(); });

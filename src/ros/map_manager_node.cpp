@@ -1,5 +1,6 @@
 #include "perennial/ros/map_manager_node.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -54,6 +55,7 @@ MapManagerNode::MapManagerNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   service_nh.setCallbackQueue(&service_queue_);
   begin_server_ = service_nh.advertiseService("begin_traversal", &MapManagerNode::onBegin, this);
   end_server_ = service_nh.advertiseService("end_traversal", &MapManagerNode::onEnd, this);
+  get_server_ = service_nh.advertiseService("get_local_maps", &MapManagerNode::onGet, this);
   service_spinner_.start();
 }
 
@@ -123,10 +125,37 @@ void MapManagerNode::publishDue(double distance_m) {
   window_begin_ = here == 0 ? 0 : here - 1;
 }
 
-perennial_nav::LocalMap MapManagerNode::message(std::uint32_t index) const {
+bool MapManagerNode::onGet(perennial_nav::GetLocalMapsRequest& request,
+                           perennial_nav::GetLocalMapsResponse& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!manager_ || !manager_->inTraversal() || request.traversal != traversal_) {
+    response.message = "traversal " + std::to_string(request.traversal) + " is not open";
+    return true;
+  }
+  const std::size_t most = std::min<std::size_t>(request.count, perennial_nav::GetLocalMapsRequest::MOST);
+  const std::size_t end = std::min<std::size_t>(request.first + most, manager_->file().size());
+  try {
+    for (std::size_t index = request.first; index < end; ++index) {
+      response.maps.push_back(messageWithoutImage(static_cast<std::uint32_t>(index)));
+    }
+    response.success = static_cast<std::uint8_t>(true);
+  } catch (const Error& error) {
+    response.maps.clear();
+    response.message = error.what();
+    ROS_ERROR("local maps cannot be read: %s", error.what());
+  }
+  return true;
+}
+
+perennial_nav::LocalMap MapManagerNode::messageWithoutImage(std::uint32_t index) const {
   perennial_nav::LocalMap message = toMessage(manager_->activeMap(index));
   message.header.stamp = stamp_;
   message.traversal = traversal_;
+  return message;
+}
+
+perennial_nav::LocalMap MapManagerNode::message(std::uint32_t index) const {
+  perennial_nav::LocalMap message = messageWithoutImage(index);
   message.image.header.stamp = stamp_;
   message.image.format = "png";
   message.image.data = manager_->file().readImagePng(index);

@@ -29,6 +29,10 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
       image_watch_(settings_.supervisor.frozen_images),
       supervisor_(settings_.supervisor),
       traversals_(nh_),
+      localiser_(nh_, traversals_,
+                 {[this] { prepare(localiser_.progress()); },
+                  [this](const auto& image, const auto& place) { onPlaceSought(image, place); },
+                  [this](const std::string& reason) { fail(reason); }}),
       gate_(nh_, settings_.sensor_timeout_s, settings_.limits, settings_.interlock),
       inputs_(gate_, settings_.interlock),
       reporter_(nh_, private_nh),
@@ -80,13 +84,19 @@ void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
   run_->goal.traversals = std::max<std::uint32_t>(1, goal.traversals);
   run_->started = run_->progress_stamp = now;
   odometer_.reset();
+  odometry_watch_.reset();
   images_.clear();
   image_watch_.reset();
   gate_.begin();
   supervisor_.start(now.toSec());
   publishState(now);
-  beginTraversal(goal.start_distance_m, std::nullopt, now);
+  run_->begun_m = goal.localise ? 0.0 : goal.start_distance_m;
+  beginTraversal(run_->begun_m, std::nullopt, now);
   ROS_INFO("repeating map '%s'", goal.map_name.c_str());
+  if (goal.localise) {
+    gate_.stop();  // it stands until its place is known; simulated time waits for a command
+    beginLocalisation();
+  }
 }
 
 void RepeatNavigator::beginTraversal(double start_m, std::optional<double> travelled_m,
@@ -101,6 +111,7 @@ void RepeatNavigator::beginTraversal(double start_m, std::optional<double> trave
         std::make_unique<RepeatSession>(metadataFromMessage(response, run_->goal.map_name),
                                         fromMessage(response.profile), response.local_maps, settings_.repeat);
   }
+  run_->local_maps = response.local_maps;
   run_->start_m = start_m;
   run_->messages.clear();
   run_->session->beginTraversal(start_m, travelled_m);
@@ -124,10 +135,16 @@ void RepeatNavigator::fail(const std::string& reason) {
 perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::string& reason) {
   gate_.stop();
   const std::unique_ptr<RepeatRun> run = std::move(run_);
+  if (localiser_.searching()) {
+    acknowledge(localiser_.image());
+  }
+  localiser_.end();
   perennial_nav::RepeatResult result;
   result.success = static_cast<std::uint8_t>(success);
   result.reason = reason;
   if (run && run->session) {
+    result.start_distance_m = run->begun_m;
+    result.certainty = run->certainty;
     result.traversals = success ? run->goal.traversals : run->number - 1;
     result.distance_m =
         success ? run->driven_m : run->driven_m + std::max(0.0, run->distance() - run->start_m);
@@ -166,6 +183,10 @@ void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
 
 void RepeatNavigator::onOdometry(const nav_msgs::OdometryConstPtr& message) {
   if (!run_ || isFromBefore(message->header)) {
+    return;
+  }
+  if (!settings_.every_image && odometry_watch_.restarted(message->header.seq)) {
+    fail("the node of the odometry was started anew, and nobody knows how far the robot went meanwhile");
     return;
   }
   const std::string problem = odometer_.add(fromMessage(*message));
@@ -213,6 +234,16 @@ void RepeatNavigator::onTimer() {
     fail("map_manager is gone: without it there are no local maps");
     return;
   }
+  if (localiser_.searching()) {
+    if (drivenByHand()) {
+      const sensor_msgs::ImageConstPtr image = localiser_.image();
+      beginLocalisation();
+      acknowledge(image);
+    } else {
+      prepare(localiser_.progress());
+    }
+    return;
+  }
   const NavigationStatus before = supervisor_.status();
   const ros::Time now = ros::Time::now();
   const NavigationStatus& status = supervisor_.watch(now.toSec(), missing(), gate_.permit());
@@ -232,7 +263,7 @@ void RepeatNavigator::onTimer() {
 // ----------------------------------------------------------------------------------------------------------
 
 void RepeatNavigator::processPending() {
-  while (run_ && !images_.empty()) {
+  while (run_ && !images_.empty() && !localiser_.searching()) {
     const sensor_msgs::ImageConstPtr image = images_.front();
     const double stamp_s = image->header.stamp.toSec();
     const std::optional<OdometrySample> newest = odometer_.newest();
@@ -251,14 +282,16 @@ void RepeatNavigator::processPending() {
     }
     if (run_ && !images_.empty()) {
       images_.pop();
-      acknowledge(image);
+      if (localiser_.image() != image) {
+        acknowledge(image);
+      }
     }
   }
 }
 
 /// Whether the first image of the queue is done with.
 bool RepeatNavigator::registerFront(double travelled_m) {
-  if (!run_->session->ready(travelled_m)) {
+  if (!localiser_.active() && !run_->session->ready(travelled_m)) {
     return false;  // its local map is still to come
   }
   try {
@@ -279,6 +312,10 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
   supervisor_.setImageProblem(problem);
   if (!problem.empty()) {
     onTimer();
+    return;
+  }
+  if (localiser_.active()) {
+    seekPlace(image, grey, travelled_m);
     return;
   }
   run_->session->setFocalLength(focalLength(grey.cols));
@@ -323,16 +360,23 @@ void RepeatNavigator::report(const NavigationStep& step, const sensor_msgs::Imag
   registration.header = image->header;
   traversals_.publish(std::move(registration));
   publishState(image->header.stamp, &step);
-  const RegistrationResult& result = step.registration.result;
-  perennial_nav::RepeatFeedback feedback;
-  feedback.distance_m = step.distance_m;
-  feedback.traversal = run_->number;
-  feedback.has_displacement = static_cast<std::uint8_t>(result.displacement_px.has_value());
-  feedback.displacement_px = result.displacement_px.value_or(0.0);
-  feedback.inliers = result.inliers;
-  feedback.state = nameOf(supervisor_.status().mode);
-  server_.publishFeedback(feedback);
+  publishFeedback(&step);
   reporter_.matches(step, image, *run_);
+}
+
+void RepeatNavigator::publishFeedback(const NavigationStep* step) {
+  perennial_nav::RepeatFeedback feedback;
+  feedback.traversal = run_->number;
+  feedback.state = nameOf(supervisor_.status().mode);
+  feedback.reason = supervisor_.status().reason;
+  if (step != nullptr) {
+    const RegistrationResult& result = step->registration.result;
+    feedback.distance_m = step->distance_m;
+    feedback.has_displacement = static_cast<std::uint8_t>(result.displacement_px.has_value());
+    feedback.displacement_px = result.displacement_px.value_or(0.0);
+    feedback.inliers = result.inliers;
+  }
+  server_.publishFeedback(feedback);
 }
 
 void RepeatNavigator::watchProgress(const ros::Time& stamp) {
@@ -361,10 +405,13 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
     ROS_ERROR("%s", error.what());  // the map stays as it was; the robot can go on
   }
   if (run.number == run.goal.traversals) {
-    const std::string reason = "repeated '" + run.goal.map_name + "' " +
-                               (run.number == 1 ? "once" : std::to_string(run.number) + " times") +
-                               "; recognised " + std::to_string(run.recognised) + " of " +
-                               std::to_string(run.images) + " images";
+    const std::string reason =
+        "repeated '" + run.goal.map_name + "' " +
+        (run.number == 1 ? "once" : std::to_string(run.number) + " times") +
+        (run.goal.localise ? " from " + humanMetres(run.begun_m) + " on, found with certainty " +
+                                 humanPercent(run.certainty)
+                           : "") +
+        "; recognised " + std::to_string(run.recognised) + " of " + std::to_string(run.images) + " images";
     supervisor_.finish(reason);
     publishState(stamp);
     server_.setSucceeded(endRun(true, reason), reason);

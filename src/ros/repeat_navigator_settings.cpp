@@ -8,8 +8,9 @@
 namespace perennial {
 namespace {
 
-const std::vector<std::string> kGroups{"extraction", "registration", "steering", "along_path", "odometer",
-                                       "supervisor", "limits",       "dead_man", "obstacles",  "teleop"};
+const std::vector<std::string> kGroups{"extraction",   "registration", "steering",   "along_path",
+                                       "localisation", "odometer",     "supervisor", "limits",
+                                       "dead_man",     "obstacles",    "teleop"};
 
 /// Of a robot of which nothing is known.
 const VelocityLimits kLimits{1.5, 1.5, 1.5, 10.0, 2.0, 4.0, 5.0};
@@ -39,6 +40,7 @@ RepeatNavigatorSettings RepeatNavigatorSettings::load(const ros::NodeHandle& pri
                      loadGroup<SteeringSettings>(private_nh, "steering"),
                      loadGroup<AlongPathSettings>(private_nh, "along_path")};
   settings.odometer = loadGroup<OdometerSettings>(private_nh, "odometer");
+  settings.localisation = loadGroup<LocalisationSettings>(private_nh, "localisation");
   settings.supervisor = loadGroup<SupervisorSettings>(private_nh, "supervisor");
   settings.supervisor.sensor_timeout_s = settings.sensor_timeout_s;
   settings.supervisor.give_up_s = settings.give_up_s;

@@ -88,6 +88,7 @@ void TeachRecorder::begin(const perennial_nav::TeachGoal& goal) {
   session_ = std::make_unique<TeachSession>(mapFile(settings_.map_folder, goal.map_name), metadata,
                                             static_cast<bool>(goal.overwrite), teach_settings_, extraction_);
   odometer_.reset();
+  odometry_watch_.reset();
   images_.clear();
   path_ = nav_msgs::Path();
   refused_odometry_ = refused_images_ = 0;
@@ -168,6 +169,10 @@ void TeachRecorder::onCommand(const geometry_msgs::TwistConstPtr& message) {
 
 void TeachRecorder::onOdometry(const nav_msgs::OdometryConstPtr& message) {
   if (!session_) {
+    return;
+  }
+  if (!settings_.every_image && odometry_watch_.restarted(message->header.seq)) {
+    abort("the node of the odometry was started anew, and nobody knows how far the robot went meanwhile");
     return;
   }
   const OdometrySample sample = fromMessage(*message);

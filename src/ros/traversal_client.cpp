@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "perennial/core/error.h"
+#include "perennial/ros/conversions.h"
 #include "perennial_nav/BeginTraversal.h"
 #include "perennial_nav/EndTraversal.h"
+#include "perennial_nav/GetLocalMaps.h"
 
 namespace perennial {
 namespace {
@@ -51,6 +53,28 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   registrations_ = 0;
   awaitListener(service.response.node);
   return service.response;
+}
+
+std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t count) {
+  if (!local_maps_.isValid()) {
+    local_maps_ = nh_.serviceClient<perennial_nav::GetLocalMaps>("get_local_maps", true);
+  }
+  perennial_nav::GetLocalMaps service;
+  service.request.traversal = id_;
+  service.request.first = static_cast<std::uint32_t>(first);
+  service.request.count = static_cast<std::uint32_t>(count);
+  if (!local_maps_.call(service)) {
+    throw MapError("map_manager does not answer on " + local_maps_.getService());
+  }
+  if (!service.response.success) {
+    throw MapError(service.response.message);
+  }
+  std::vector<ActiveMap> maps;
+  maps.reserve(service.response.maps.size());
+  for (const perennial_nav::LocalMap& message : service.response.maps) {
+    maps.push_back(fromMessage(message));
+  }
+  return maps;
 }
 
 void TraversalClient::awaitListener(const std::string& node) {

@@ -18,6 +18,7 @@ class Supervisor : public ::testing::Test {
  protected:
   Supervisor() {
     settings_.max_blind_distance_m = 2.0;
+    settings_.sights_to_trust = 3;
     settings_.hold_timeout_s = 10.0;
     supervisor_ = NavigationSupervisor(settings_);
   }
@@ -97,14 +98,38 @@ TEST_F(Supervisor, startingBlindCountsFromTheFirstImage) {
 TEST_F(Supervisor, blindnessOnceInAWhileDoesNotAddUp) {
   startAndSee();
   for (int i = 0; i < 300; ++i) {
-    EXPECT_NE(see(i % 10 == 0 ? kSure : kBlind).mode, Mode::kHolding);
+    EXPECT_NE(see(i % 10 < settings_.sights_to_trust ? kSure : kBlind).mode, Mode::kHolding);
   }
+}
+
+TEST_F(Supervisor, aLuckySightNowAndThenDoesNotMakeItSee) {
+  startAndSee();
+  const double blind_from_m = travelled_m_;
+  const int lucky = settings_.sights_to_trust - 1;
+  for (int i = 0; supervisor_.status().mode != Mode::kHolding; ++i) {
+    ASSERT_LT(travelled_m_ - blind_from_m, settings_.max_blind_distance_m + 0.1);
+    see(i % 10 < 10 - lucky ? kBlind : kSure);
+  }
+  moves_ = false;
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_EQ(see(i % 10 < 10 - lucky ? kBlind : kSure).mode, Mode::kHolding);
+  }
+}
+
+TEST_F(Supervisor, trustsASingleSightWhereThatIsAskedFor) {
+  settings_.sights_to_trust = 1;
+  supervisor_ = NavigationSupervisor(settings_);
+  startAndSee();
+  driveBlindUntilHolding();
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
 }
 
 TEST_F(Supervisor, goesOnByItselfWhenItSeesAgain) {
   startAndSee();
   driveBlindUntilHolding();
   EXPECT_EQ(see(kBlind).mode, Mode::kHolding) << "it retries";
+  EXPECT_EQ(see(kSure).mode, Mode::kHolding) << "once may be chance";
+  EXPECT_EQ(see(kSure).mode, Mode::kHolding);
   EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
   EXPECT_EQ(see(kBlind).mode, Mode::kDegraded) << "and may be blind for the whole distance again";
 }
@@ -147,6 +172,33 @@ TEST_F(Supervisor, givesUpWhenNothingEverComes) {
     watch(1.0, "image");
   }
   EXPECT_EQ(supervisor_.status().mode, Mode::kFailed);
+}
+
+TEST_F(Supervisor, aRobotThatPreparesIsNotSilentAndSaysWhatItDoes) {
+  supervisor_.start(now_s_);
+  for (int i = 0; i < 30; ++i) {
+    now_s_ += 1.0;
+    const NavigationStatus& status = supervisor_.prepare(now_s_, "looking for the place", {});
+    ASSERT_EQ(status.mode, Mode::kStarting);
+    EXPECT_EQ(status.reason, "looking for the place");
+    EXPECT_EQ(status.speed_factor, 0.0);
+  }
+  EXPECT_EQ(watch(0.1, "image").reason, "looking for the place") << "until something is seen";
+  EXPECT_EQ(watch(1.0, "image").mode, Mode::kStopped) << "afterwards silence counts again";
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
+}
+
+TEST_F(Supervisor, preparingIsStoppedByWhatForbidsMotion) {
+  supervisor_.start(now_s_);
+  const MotionPermit stop{Kind::kStop, 0.0, "the emergency stop is engaged", {}};
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", stop).mode, Mode::kStopped);
+  EXPECT_EQ(supervisor_.status().reason, stop.reason);
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", {}).mode, Mode::kStarting);
+  EXPECT_EQ(supervisor_.prepare(now_s_ - 5.0, "looking", {}).mode, Mode::kFailed) << "time goes back";
+}
+
+TEST_F(Supervisor, nothingIsPreparedWithoutAGoal) {
+  EXPECT_EQ(supervisor_.prepare(now_s_, "looking", {}).mode, Mode::kIdle);
 }
 
 TEST_F(Supervisor, unusableImagesStopAtOnceThenFail) {

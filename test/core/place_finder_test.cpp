@@ -1,9 +1,13 @@
 // A view is found among all local maps of a path, quickly; refused where nothing or too much looks like it.
 #include <chrono>
 #include <cstdio>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "perennial/core/error.h"
+#include "perennial/core/localisation.h"
 #include "perennial/core/place_finder.h"
 #include "perennial/testing/synthetic_place.h"
 
@@ -12,35 +16,42 @@ namespace {
 
 using test_tools::SyntheticPlace;
 
+FeatureSet featuresAt(unsigned place, double dx = 0.0, std::size_t features = 500) {
+  return SyntheticPlace(place, 600).view(0.0, dx, features);
+}
+
 /// Local maps 0.2 m apart; every place, 1 m long, has landmarks of its own, unless it repeats after `period`
 /// places.
-class Finding : public ::testing::Test {
- protected:
-  static FeatureSet featuresAt(unsigned place, double dx = 0.0, std::size_t features = 500) {
-    return SyntheticPlace(place, 600).view(0.0, dx, features);
+std::vector<ActiveMap> path(unsigned local_maps, unsigned period) {
+  std::vector<ActiveMap> maps;
+  for (unsigned i = 0; i < local_maps; ++i) {
+    ActiveMap map;
+    map.index = i;
+    map.distance_m = 0.2 * i;
+    map.alternatives.emplace_back();
+    map.alternatives.front().features = featuresAt(i / 5 % period);
+    maps.push_back(std::move(map));
   }
+  return maps;
+}
 
-  void addPath(unsigned local_maps, unsigned period) {
-    for (unsigned i = 0; i < local_maps; ++i) {
-      ActiveMap map;
-      map.index = i;
-      map.distance_m = 0.2 * i;
-      map.alternatives.emplace_back();
-      map.alternatives.front().features = featuresAt(i / 5 % period);
-      finder_.add(std::move(map));
-    }
+PlaceGuess find(const std::vector<ActiveMap>& maps, const FeatureSet& view) {
+  PlaceFinder finder;
+  finder.seek(view);
+  for (const ActiveMap& map : maps) {
+    finder.consider(map);
   }
+  return finder.guess();
+}
 
-  PlaceFinder finder_;
-};
-
-TEST_F(Finding, findsAPlaceAmongAThousandLocalMapsInUnderASecond) {
-  addPath(1000, 1000);
+TEST(PlaceFinder, findsAPlaceAmongAThousandLocalMapsInUnderASecond) {
+  const std::vector<ActiveMap> maps = path(1000, 1000);
   const FeatureSet view = featuresAt(123, 40.0);
   const auto begin = std::chrono::steady_clock::now();
-  const PlaceGuess guess = finder_.find(view);
+  const PlaceGuess guess = find(maps, view);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  std::printf("1000 local maps of 500 features: %.3f s, %s\n", took.count(), guess.reason.c_str());
+  std::printf("1000 local maps of 500 features: %.3f s, %s, certainty %.2f\n", took.count(),
+              guess.reason.c_str(), guess.certainty);
   EXPECT_TRUE(guess.sure) << guess.reason;
   EXPECT_GE(guess.distance_m, 123.0 - 1e-9);
   EXPECT_LE(guess.distance_m, 123.8 + 1e-9);
@@ -48,32 +59,126 @@ TEST_F(Finding, findsAPlaceAmongAThousandLocalMapsInUnderASecond) {
   EXPECT_LT(took.count(), 10.0) << "measured: under 1 s on an idle processor; this machine may be busy";
 }
 
-TEST_F(Finding, refusesWhatIsNotOnThePath) {
-  addPath(100, 1000);
-  const PlaceGuess guess = finder_.find(featuresAt(5000));
+TEST(PlaceFinder, refusesWhatIsNotOnThePath) {
+  const PlaceGuess guess = find(path(100, 1000), featuresAt(5000));
   EXPECT_FALSE(guess.sure);
   EXPECT_NE(guess.reason.find("not recognised"), std::string::npos) << guess.reason;
 }
 
-TEST_F(Finding, refusesWhatLooksLikeTwoPlaces) {
-  addPath(200, 20);  // everything twice
-  const PlaceGuess guess = finder_.find(featuresAt(10));
+TEST(PlaceFinder, refusesWhatLooksLikeTwoPlaces) {
+  const PlaceGuess guess = find(path(200, 20), featuresAt(10));  // everything twice
   EXPECT_FALSE(guess.sure);
   EXPECT_NE(guess.reason.find("ambiguous"), std::string::npos) << guess.reason;
+  EXPECT_NE(guess.reason.find("10."), std::string::npos) << "both places are named: " << guess.reason;
   EXPECT_NE(guess.reason.find("30."), std::string::npos) << "both places are named: " << guess.reason;
 }
 
-TEST_F(Finding, theEndsOfALoopAreOnePlace) {
-  addPath(205, 40);  // the last metre looks like the first
-  const PlaceGuess guess = finder_.find(featuresAt(0));
+TEST(PlaceFinder, aPlaceThatLooksTheSameForLongHidesNoOther) {
+  std::vector<ActiveMap> maps = path(400, 1000);
+  for (std::size_t i = 100; i < 250; ++i) {  // 30 m of them, and one metre elsewhere
+    maps[i].alternatives = maps[5 * 60].alternatives;
+  }
+  const PlaceGuess guess = find(maps, featuresAt(60));
+  EXPECT_FALSE(guess.sure);
+  EXPECT_NE(guess.reason.find("ambiguous"), std::string::npos) << guess.reason;
+}
+
+TEST(PlaceFinder, theEndsOfALoopAreOnePlace) {
+  const PlaceGuess guess = find(path(205, 40), featuresAt(0));  // the last metre looks like the first
   EXPECT_TRUE(guess.sure) << guess.reason;
   EXPECT_LT(guess.distance_m, 1.0) << "the beginning, of two that are alike";
 }
 
-TEST_F(Finding, refusesAnEmptyViewAndAnEmptyPath) {
-  EXPECT_FALSE(finder_.find(featuresAt(0)).sure);
-  addPath(10, 10);
-  EXPECT_FALSE(finder_.find({}).sure);
+TEST(PlaceFinder, aShortPathIsNotAllEnds) {
+  const PlaceGuess guess = find(path(40, 4), featuresAt(1));  // 8 m: 1 m looks like 5 m
+  EXPECT_FALSE(guess.sure);
+  EXPECT_NE(guess.reason.find("ambiguous"), std::string::npos) << guess.reason;
+}
+
+TEST(PlaceFinder, refusesAnEmptyViewAndAnEmptyPath) {
+  EXPECT_FALSE(find({}, featuresAt(0)).sure);
+  EXPECT_FALSE(find(path(10, 10), {}).sure);
+}
+
+TEST(PlaceFinder, everySearchIsOnesOwn) {
+  const std::vector<ActiveMap> maps = path(100, 1000);
+  PlaceFinder finder;
+  for (const unsigned place : {3U, 17U, 5U}) {
+    finder.seek(featuresAt(place));
+    EXPECT_EQ(finder.considered(), 0U);
+    for (const ActiveMap& map : maps) {
+      finder.consider(map);
+    }
+    EXPECT_EQ(finder.considered(), maps.size());
+    const PlaceGuess guess = finder.guess();
+    EXPECT_TRUE(guess.sure) << guess.reason;
+    EXPECT_NEAR(guess.distance_m, place + 0.4, 0.5);
+  }
+}
+
+/// Two images in a row, as by default, of a path on which every metre looks different.
+class TwoImages : public ::testing::Test {
+ protected:
+  std::optional<PlaceGuess> look(unsigned place, double travelled_m) {
+    localisation_.look(featuresAt(place), travelled_m);
+    EXPECT_EQ(localisation_.next(), 0U);
+    while (!localisation_.complete()) {
+      localisation_.consider(maps_[localisation_.next()]);
+    }
+    return localisation_.conclude();
+  }
+
+  const std::vector<ActiveMap> maps_ = path(100, 1000);
+  Localisation localisation_{{}, {}, 100};
+};
+
+TEST_F(TwoImages, agree) {
+  EXPECT_FALSE(look(12, 3.0)) << "one is not enough";
+  const auto guess = look(12, 3.0);
+  ASSERT_TRUE(guess);
+  EXPECT_TRUE(guess->sure) << guess->reason;
+  EXPECT_NEAR(guess->distance_m, 12.4, 0.5);
+}
+
+TEST_F(TwoImages, agreeOnARobotThatMoves) {
+  EXPECT_FALSE(look(12, 3.0));
+  const auto guess = look(14, 5.0);
+  ASSERT_TRUE(guess);
+  EXPECT_TRUE(guess->sure) << guess->reason;
+  EXPECT_NEAR(guess->distance_m, 14.4, 0.5) << "where the newest was taken";
+}
+
+TEST_F(TwoImages, disagree) {
+  EXPECT_FALSE(look(12, 3.0));
+  const auto guess = look(15, 3.0);
+  ASSERT_TRUE(guess);
+  EXPECT_FALSE(guess->sure);
+  EXPECT_NE(guess->reason.find("disagree"), std::string::npos) << guess->reason;
+}
+
+TEST_F(TwoImages, areRefusedByEither) {
+  const auto first = look(5000, 3.0);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->sure);
+  EXPECT_FALSE(look(12, 3.0));
+  const auto second = look(5000, 3.0);
+  ASSERT_TRUE(second);
+  EXPECT_FALSE(second->sure);
+}
+
+TEST_F(TwoImages, sayHowFarTheyAre) {
+  localisation_.look(featuresAt(3), 0.0);
+  localisation_.consider(maps_[0]);
+  EXPECT_EQ(localisation_.progress(), "looking for the place: image 1 of 2, 1 of 100 local maps compared");
+}
+
+TEST(LocalisationSettings, outOfRangeIsRefused) {
+  for (const char* key : {"min_confidence", "rival_share", "elsewhere_m", "agreement_m"}) {
+    ParameterReader reader({{key, -1.0}});
+    EXPECT_THROW(LocalisationSettings::load(reader), ParameterError) << key;
+  }
+  ParameterReader reader({{"agreeing_images", 0}});
+  EXPECT_THROW(LocalisationSettings::load(reader), ParameterError);
 }
 
 }  // namespace

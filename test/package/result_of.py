@@ -25,7 +25,7 @@ def main(path, name, *command):
         failure = ElementTree.SubElement(case, 'failure', message='ended with status %d' % process.returncode)
         failure.text = process.stdout
     elif process.returncode == SKIPPED:
-        ElementTree.SubElement(case, 'skipped')
+        ElementTree.SubElement(case, 'skipped', message=process.stdout.strip())
     ElementTree.ElementTree(suite).write(path, encoding='utf-8', xml_declaration=True)
     return 1 if failed else 0
 

@@ -43,13 +43,14 @@ class AlongPath : public ClosedLoop {
   /// A robot that was put beside the start of the loop knows where it stands.
   void findTheStart() {
     const MapManager maps = manager(std::make_shared<strategies::StaticMap>());
-    PlaceFinder finder;
-    for (std::uint32_t i = 0; i < maps.file().size(); ++i) {
-      finder.add(activate(maps.strategy(), maps.file().read(i), 0.0));
-    }
     park_->place(0.2, 0.0);
     const park::ParkFrame frame = park_->step();
-    const PlaceGuess guess = finder.find(FeatureExtractor(settings_.extraction).extract(frame.image));
+    PlaceFinder finder;
+    finder.seek(FeatureExtractor(settings_.extraction).extract(frame.image));
+    for (std::uint32_t i = 0; i < maps.file().size(); ++i) {
+      finder.consider(activate(maps.strategy(), maps.file().read(i), 0.0));
+    }
+    const PlaceGuess guess = finder.guess();
     std::printf("0.2 m beside the start: %s\n", guess.reason.c_str());
     EXPECT_TRUE(guess.sure) << guess.reason;
     EXPECT_LE(guess.distance_m, 0.6);

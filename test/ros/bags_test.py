@@ -73,7 +73,7 @@ def assignments(parameters):
 
 
 class Bags(unittest.TestCase):
-    def displacements_by_nodes(self, dataset, taught, repeated, name, config):
+    def displacements_by_nodes(self, dataset, taught, repeated, name, config, *more):
         bags = [os.path.join(FOLDER, "%s_%s.bag" % (name, traversal)) for traversal in (taught, repeated)]
         for traversal, bag in zip((taught, repeated), bags):
             call("rosrun", "perennial_nav", "dataset_to_bag", dataset, traversal, bag, "--overwrite")
@@ -83,7 +83,7 @@ class Bags(unittest.TestCase):
         registrations = []
         subscriber = rospy.Subscriber("/registration", Registration, registrations.append, queue_size=1000)
         # The data set's distances are exact; correcting them would compare other places than the core does.
-        output = call("roslaunch", "perennial_nav", "repeat.launch", "bag:=" + bags[1], "along_path:=false", *common)
+        output = call("roslaunch", "perennial_nav", "repeat.launch", "bag:=" + bags[1], "along_path:=false", *common, *more)
         wait_until(lambda: subscriber.get_num_connections() == 0, "the nodes to be gone")
         subscriber.unregister()
         self.assertIn("repeated '%s'" % name, output)
@@ -121,6 +121,22 @@ class Bags(unittest.TestCase):
         make_dataset(dataset)
         right, images = self.compare(dataset, "first", "second", "made_up")
         self.assertEqual(right, images)
+
+    def test_a_bag_that_begins_somewhere_on_the_path(self):
+        """Of six images two find the place; the others are registered from there on."""
+        dataset = os.path.join(FOLDER, "begun_late")
+        make_dataset(dataset)
+        manifest = os.path.join(dataset, "manifest.csv")
+        with open(manifest) as file:
+            rows = [row for row in file if not any("second_%02d" % place in row for place in range(6))]
+        with open(manifest, "w") as file:
+            file.writelines(rows)
+        config = os.path.join(rospkg.RosPack().get_path("perennial_nav"), "config", "repeat_navigator.yaml")
+        found = self.displacements_by_nodes(dataset, "first", "second", "begun_late", config, "localise:=true")
+        for message, distance in zip(found, (4.0, 4.5, 5.0, 5.5)):
+            self.assertAlmostEqual(message.distance_m, distance, places=6)
+            self.assertTrue(message.has_displacement)
+        self.assertEqual(len(found), 4)
 
     def test_real_images_half_a_year_apart(self):
         dataset = os.path.join(DATA, "stromovka_path")

@@ -43,7 +43,7 @@ class Park(unittest.TestCase):
         self.assertLessEqual(rms, 0.10)
         self.assertTrue(os.path.getsize(os.path.join(FOLDER, "matches.png")) > 10000, "somebody looked at the matches")
 
-    def test_cancelling_in_the_middle_stops_the_robot(self):
+    def cancel_in_the_middle(self):
         mission = self.mission
         mission.place(0.0, 0.0, self.demo.DAY, False)
         mission.repeat_client.send_goal(RepeatGoal(map_name="loop", traversals=1))
@@ -54,6 +54,38 @@ class Park(unittest.TestCase):
         mission.wait(lambda: mission.done(mission.repeat_client), "the end of the goal")
         mission.wait(lambda: mission.truth[-1][4] < 0.01, "the robot to stand")
         self.assertFalse(mission.repeat_client.get_result().success)
+
+    def place_along_the_path(self):
+        """Where on the path the robot really is."""
+        _, x, y, _, _ = self.mission.truth[-1]
+        row = min(self.taught, key=lambda row: math.hypot(row[0] - x, row[1] - y))
+        return row[3]
+
+    def test_cancelled_in_the_middle_it_stops_and_finds_its_place_again(self):
+        mission = self.mission
+        self.cancel_in_the_middle()
+        here_m = self.place_along_the_path()
+        self.assertGreater(here_m, 0.3 * self.taught[-1, 3])
+        mission.repeat_client.send_goal(RepeatGoal(map_name="loop", localise=True))
+        mission.wait(lambda: mission.done(mission.repeat_client), "the end of the loop")
+        result = mission.repeat_client.get_result()
+        print("at %.2f m, found at %.2f m with certainty %.2f" % (here_m, result.start_distance_m, result.certainty))
+        self.assertTrue(result.success, result.reason)
+        self.assertAlmostEqual(result.start_distance_m, here_m, delta=1.0)
+        end = self.taught[-1]
+        _, x, y, _, _ = mission.truth[-1]
+        self.assertLess(math.hypot(x - end[0], y - end[1]), 1.0, "it drove to the end of the loop")
+
+    def test_put_down_in_the_dark_it_refuses(self):
+        mission = self.mission
+        night = "{date_time: '2026-06-21T23:30:00Z', weather: clear}"
+        mission.place(0.0, 0.0, night, False)
+        mission.repeat_client.send_goal(RepeatGoal(map_name="loop", localise=True))
+        mission.wait(lambda: mission.done(mission.repeat_client), "the refusal")
+        result = mission.repeat_client.get_result()
+        self.assertFalse(result.success, result.reason)
+        self.assertIn("not found", result.reason)
+        self.assertLess(max(row[4] for row in mission.truth), 0.01, "it must not move")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
 """The nodes' side of tests with a fake robot: teaching and repeating a straight path through the real nodes."""
 import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
 from fake_robot import FakeRobot, wait_until
 from perennial_nav.msg import NavigationState, Registration, RepeatAction, RepeatGoal, TeachAction, TeachGoal
 
 LENGTH_M = 8.0
 BOTH = ["teach_recorder", "repeat_navigator"]
+UNANSWERED = (actionlib.CommState.WAITING_FOR_GOAL_ACK, actionlib.CommState.PENDING)
 
 
 class Stack:
@@ -29,12 +29,8 @@ class Stack:
 
     @staticmethod
     def done(client):
-        # Either of the client's two states may be overtaken: its threads set them in any order.
-        return (
-            client.gh is None
-            or client.gh.get_comm_state() == actionlib.CommState.DONE
-            or client.simple_state == actionlib.SimpleGoalState.DONE
-        )
+        # Its own state is no help: the thread that ends the last goal may set it when the next one has been sent already.
+        return client.gh is None or client.gh.get_result() is not None
 
     def end(self, client):
         """Ends a goal, by its name: cancelling all goals may arrive late, and end the next one."""
@@ -45,22 +41,22 @@ class Stack:
     def start(self, client, goal):
         client.send_goal(goal)
         wait_until(
-            lambda: self.done(client) or client.get_state() == GoalStatus.ACTIVE, "the goal to be taken up"
+            lambda: self.done(client) or client.gh.get_comm_state() not in UNANSWERED, "the goal to be taken up"
         )
 
     def result(self, client):
         wait_until(lambda: self.done(client), "the result")
         return client.get_result()
 
-    def teach_path(self, name, overwrite=False):
+    def teach_path(self, name, overwrite=False, length_m=LENGTH_M, speed=0.5):
         robot = self.robot
         self.settle()
         self.start(self.teach, TeachGoal(map_name=name, overwrite=overwrite))
         if self.done(self.teach):
             return self.result(self.teach)
-        robot.speed = 0.5
+        robot.speed = speed
         robot.x -= robot.speed * 0.1  # the first image is taken at 0
-        while robot.x < LENGTH_M - 1e-6:
+        while robot.x < length_m - 1e-6:
             robot.step(BOTH)
         self.teach.cancel_goal()
         return self.result(self.teach)

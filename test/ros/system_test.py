@@ -2,12 +2,9 @@
 """Nodes that are killed while the robot repeats: it stops, the goal ends with a reason or goes on, and the next one works."""
 import os
 import shutil
-import signal
 import sys
 import unittest
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 from perennial_nav.msg import NavigationState
@@ -15,6 +12,7 @@ from std_msgs.msg import Empty
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from fake_robot import FakeRobot, wait_until  # noqa: E402
+from killing import kill, wait_for_new  # noqa: E402
 from stack import BOTH, LENGTH_M, Stack  # noqa: E402
 
 FOLDER = ""  # of the maps; from the command line
@@ -30,15 +28,6 @@ class WatchedRobot(FakeRobot):
     def tick(self, seconds):
         super().tick(seconds)
         self.heartbeat.publish()
-
-
-def process_of(node):
-    """The process id of a node; None while it is not there."""
-    try:
-        address = rosgraph.Master("/system_test").lookupNode(node)
-        return xmlrpc.client.ServerProxy(address).getPid("/system_test")[2]
-    except (rosgraph.MasterError, OSError):
-        return None
 
 
 class Killed(unittest.TestCase):
@@ -62,16 +51,6 @@ class Killed(unittest.TestCase):
         self.assertFalse(self.stack.done(self.stack.repeat))
         self.assertGreater(self.robot.command().linear.x, 0.1)
 
-    def kill(self, node):
-        """kill -9, and waits until roslaunch has started it anew."""
-        before = process_of(node)
-        self.assertIsNotNone(before)
-        os.kill(before, signal.SIGKILL)
-        return before
-
-    def wait_for_new(self, node, before):
-        wait_until(lambda: process_of(node) not in (None, before), node + " to be started anew")
-
     def wait_for_answer(self, node):
         """Until a node that was started anew sees the images; connections to the dead one are counted for a while."""
         stamps = []
@@ -90,7 +69,7 @@ class Killed(unittest.TestCase):
         self.assertTrue(result.success, result.reason)
 
     def test_map_manager(self):
-        before = self.kill("/map_manager")
+        before = kill("/map_manager")
 
         def ended():
             self.robot.tick(0.02)
@@ -99,8 +78,8 @@ class Killed(unittest.TestCase):
         wait_until(ended, "the goal to end")
         self.assertIn("map_manager is gone", self.stack.result(self.stack.repeat).reason)
         wait_until(self.robot.stands, "the robot to stop")
-        self.assertEqual(self.stack.states[-1].state, NavigationState.FAILED)
-        self.wait_for_new("/map_manager", before)
+        wait_until(lambda: self.stack.states[-1].state == NavigationState.FAILED, "the state 'failed'")
+        wait_for_new("/map_manager", before)
         wait_until(self.serves, "the new map_manager")
         self.complete()
 
@@ -113,8 +92,8 @@ class Killed(unittest.TestCase):
             return False
 
     def test_repeat_navigator(self):
-        before = self.kill("/repeat_navigator")
-        self.wait_for_new("/repeat_navigator", before)
+        before = kill("/repeat_navigator")
+        wait_for_new("/repeat_navigator", before)
         sent = len(self.robot.commands)
         wait_until(lambda: self.robot.heartbeat.get_num_connections() > 0, "the new navigator's safety inputs")
         self.wait_for_answer("repeat_navigator")
@@ -127,13 +106,13 @@ class Killed(unittest.TestCase):
         self.complete()
 
     def test_teach_recorder(self):
-        before = self.kill("/teach_recorder")
+        before = kill("/teach_recorder")
         for _ in range(1000):
             if self.stack.done(self.stack.repeat):
                 break
             self.robot.step(["repeat_navigator"])
         self.assertTrue(self.stack.result(self.stack.repeat).success, "it has no part in repeating")
-        self.wait_for_new("/teach_recorder", before)
+        wait_for_new("/teach_recorder", before)
         self.wait_for_answer("teach_recorder")
 
     def test_heartbeat_that_stops(self):

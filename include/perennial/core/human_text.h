@@ -13,5 +13,11 @@ inline std::string humanNumber(double value, const char* unit) {
 }
 inline std::string humanSeconds(double value) { return humanNumber(value, "s"); }
 inline std::string humanMetres(double value) { return humanNumber(value, "m"); }
+/// `share`: 0 to 1.
+inline std::string humanPercent(double share) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.0f %%", 100.0 * share);
+  return text;
+}
 
 }  // namespace perennial

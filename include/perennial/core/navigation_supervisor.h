@@ -11,6 +11,7 @@ namespace perennial {
 
 struct SupervisorSettings {
   double max_blind_distance_m = 3.0;  ///< driven by odometry alone, at most; then the robot holds
+  int sights_to_trust = 3;  ///< so many images recognised in a row end being blind; fewer may be chance
   double hold_timeout_s = 60.0;       ///< holding for so long: the goal fails
   double blind_speed = 0.5;           ///< share of the taught speed while the view is not recognised
   double least_speed = 0.4;           ///< share of the taught speed with the lowest confidence
@@ -60,6 +61,9 @@ class NavigationSupervisor {
   /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
   /// "odometry", ...
   const NavigationStatus& watch(double now_s, const std::string& missing, const MotionPermit& permit);
+  /// Before the first image to drive by: the robot stands and is busy with what it has, so nothing is
+  /// missing. `doing`: for a person; it stays the reason for starting.
+  const NavigationStatus& prepare(double now_s, const std::string& doing, const MotionPermit& permit);
   /// Images came that cannot be used, and why; empty: they can again.
   void setImageProblem(const std::string& problem) { image_problem_ = problem; }
 
@@ -73,6 +77,7 @@ class NavigationSupervisor {
 
  private:
   void noteSight(double travelled_m, const Sight& sight, const MotionPermit& permit);
+  bool trusted() const { return sights_in_a_row_ >= settings_.sights_to_trust; }
   void noteTime(double now_s);
   void decide(double now_s, const std::string& missing, const MotionPermit& permit);
   bool mustStop(double now_s, const std::string& missing, const MotionPermit& permit);
@@ -87,8 +92,10 @@ class NavigationSupervisor {
   double newest_s_ = 0.0;  ///< newest time heard of
   double seen_s_ = 0.0;    ///< stamp of the newest image used, or of the goal
   bool seen_any_ = false;
+  std::string starting_;  ///< reason for a robot that has not seen anything yet
   Sight sight_;
-  double blind_from_m_ = 0.0;  ///< travelled distance where the path was last recognised
+  int sights_in_a_row_ = 0;    ///< newest images that were recognised, counted up to sights_to_trust
+  double blind_from_m_ = 0.0;  ///< travelled distance where the path was last recognised for certain
   double blind_m_ = 0.0;       ///< driven since
   std::optional<double> holding_since_s_;
   std::string image_problem_;

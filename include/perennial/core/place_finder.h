@@ -4,14 +4,25 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "perennial/core/active_map.h"
 #include "perennial/core/feature.h"
+#include "perennial/core/parameter_reader.h"
 #include "perennial/core/registration.h"
 
 namespace perennial {
+
+struct LocalisationSettings {
+  double min_confidence = 0.9;  ///< of the registration; lower: nothing was recognised
+  double rival_share = 0.6;     ///< another place with this share of the best one's inliers: ambiguous
+  double elsewhere_m = 3.0;     ///< nearer to each other along the path, local maps see the same place
+  int agreeing_images = 2;      ///< so many images in a row must give the same place
+  double agreement_m = 1.0;     ///< within this distance
+
+  /// Keys as the members are called. Throws ParameterError.
+  static LocalisationSettings load(ParameterReader& reader);
+};
 
 /// Where on a path a view was taken, and how sure that is.
 struct PlaceGuess {
@@ -23,34 +34,60 @@ struct PlaceGuess {
   std::string reason;  ///< for a person: where, or why not
 };
 
-/// Finds a view among all local maps of a path: the strongest features of the view against every local map,
-/// then the whole view against the likeliest. Not sure when no place is recognised, or when another place,
-/// more than 3 m away, speaks for itself nearly as well. The two ends of a loop are one place. Not
-/// thread-safe.
+/// Finds a view among all local maps of a path, which pass by once: the strongest features of the view are
+/// registered against every local map, and the whole view against those of the likeliest stretches, which
+/// alone are kept, so that memory does not grow with the path. Not sure when no place is recognised, or when
+/// another place speaks for itself nearly as well. The two ends of a path that look alike are the ends of a
+/// loop, and one place: its beginning. Not thread-safe.
 class PlaceFinder {
  public:
-  explicit PlaceFinder(const RegistrationSettings& settings = {});
+  explicit PlaceFinder(const LocalisationSettings& settings = {},
+                       const RegistrationSettings& registration = {});
 
-  /// Local maps in order of their distance. Those of the path that were added before stay.
-  void add(ActiveMap map) { maps_.push_back(std::move(map)); }
-  std::size_t size() const { return maps_.size(); }
-
-  PlaceGuess find(const FeatureSet& view);
+  /// Begins to seek a view; an earlier search is forgotten.
+  void seek(FeatureSet view);
+  /// The next local map of the path, in order of distance. Needs a view.
+  void consider(ActiveMap map);
+  /// Local maps considered for this view.
+  std::size_t considered() const { return considered_; }
+  /// After the last local map.
+  PlaceGuess guess();
 
  private:
+  /// Successive local maps of about a metre.
+  struct Stretch {
+    struct Member {
+      ActiveMap map;
+      int inliers = 0;
+    };
+    std::vector<Member> members;
+    double begin_m = 0.0;
+    int inliers = 0;  ///< of the best member, with the strongest features
+  };
   struct Candidate {
-    const ActiveMap* map = nullptr;
+    double distance_m = 0.0;
+    std::uint32_t index = 0;
     int inliers = 0;
     double confidence = 0.0;
     bool recognised = false;
   };
 
-  Candidate judge(const ActiveMap& map, const FeatureSet& view);
-  std::vector<Candidate> likeliest(const FeatureSet& view);
-  bool endsOfALoop(const ActiveMap& a, const ActiveMap& b) const;
+  int judgeRoughly(const ActiveMap& map);
+  Candidate judge(const ActiveMap& map);
+  void closeStretch();
+  std::vector<Candidate> likeliest();
+  bool samePlace(const Candidate& a, const Candidate& b) const;
+  Candidate beginningOfLoop(const std::vector<Candidate>& candidates) const;
 
+  LocalisationSettings settings_;
   std::unique_ptr<Registration> registration_;
-  std::vector<ActiveMap> maps_;
+  FeatureSet view_;
+  FeatureSet strongest_;
+  std::vector<Stretch> stretches_;  ///< the likeliest so far
+  Stretch open_;                    ///< the newest, still growing
+  std::size_t considered_ = 0;
+  double first_m_ = 0.0;
+  double last_m_ = 0.0;
   ActiveRegistrationWorkspace workspace_;
   ActiveRegistration result_;
 };

@@ -68,6 +68,9 @@ class RepeatSession {
   /// Throws ImageError when an image differs in size or encoding from those the map was taught with.
   void requireSuitable(const cv::Mat& image, const std::string& encoding) const;
 
+  /// Features as the map has them. `image`: as requireSuitable() wants it, CV_8UC1.
+  void extractInto(const cv::Mat& image, FeatureSet& view) { extractor_.extractInto(image, view); }
+
   /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
   /// The same into a step whose memory is used again: once it has served for as many features, nothing is

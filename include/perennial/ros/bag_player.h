@@ -23,6 +23,7 @@ struct BagPlayerSettings {
   std::string map_name;           ///< required
   bool overwrite = false;         ///< teach: replace a map of this name
   double start_distance_m = 0.0;  ///< repeat: where along the path the bag begins
+  bool localise = false;          ///< repeat: that place is found by the images instead
   std::string image_topic = "/camera/image_raw";
   std::string odom_topic = "/odom";
   std::string command_topic =

@@ -14,6 +14,7 @@
 #include "perennial/ros/strategy_loader.h"
 #include "perennial_nav/BeginTraversal.h"
 #include "perennial_nav/EndTraversal.h"
+#include "perennial_nav/GetLocalMaps.h"
 #include "perennial_nav/LocalMap.h"
 #include "perennial_nav/Registration.h"
 
@@ -28,7 +29,8 @@ struct MapManagerNodeSettings {
 };
 
 /// Owns the map file: opens a map for a traversal (service begin_traversal), publishes local_maps ahead of
-/// the robot, learns from registration, and stores or forgets what was learned (service end_traversal).
+/// the robot, learns from registration, and stores or forgets what was learned (service end_traversal). To a
+/// robot that looks for its place it gives any local maps (service get_local_maps).
 ///
 /// Two threads: services are served by one of their own, because end_traversal waits for the registrations
 /// that are still on their way; everything else runs on the global queue. One mutex guards all state.
@@ -42,6 +44,7 @@ class MapManagerNode {
   bool onBegin(perennial_nav::BeginTraversalRequest& request,
                perennial_nav::BeginTraversalResponse& response);
   bool onEnd(perennial_nav::EndTraversalRequest& request, perennial_nav::EndTraversalResponse& response);
+  bool onGet(perennial_nav::GetLocalMapsRequest& request, perennial_nav::GetLocalMapsResponse& response);
   void onRegistration(const perennial_nav::RegistrationConstPtr& message);
   void onSubscriber(const ros::SingleSubscriberPublisher& subscriber);
 
@@ -49,6 +52,7 @@ class MapManagerNode {
             perennial_nav::BeginTraversalResponse& response);
   void learn(const perennial_nav::Registration& message);
   void publishDue(double distance_m);
+  perennial_nav::LocalMap messageWithoutImage(std::uint32_t index) const;
   perennial_nav::LocalMap message(std::uint32_t index) const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -76,6 +80,7 @@ class MapManagerNode {
   ros::CallbackQueue service_queue_;
   ros::ServiceServer begin_server_;
   ros::ServiceServer end_server_;
+  ros::ServiceServer get_server_;
   ros::AsyncSpinner service_spinner_;
 };
 

@@ -14,9 +14,11 @@
 #include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/odometer.h"
 #include "perennial/core/repeat_session.h"
+#include "perennial/core/restart_watch.h"
 #include "perennial/ros/command_gate.h"
 #include "perennial/ros/image_queue.h"
 #include "perennial/ros/live_settings.h"
+#include "perennial/ros/localiser.h"
 #include "perennial/ros/navigation_reporter.h"
 #include "perennial/ros/repeat_navigator_settings.h"
 #include "perennial/ros/repeat_run.h"
@@ -57,8 +59,17 @@ class RepeatNavigator {
   void followHand(double travelled_m);
   void drive(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image);
   void report(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image);
+  void publishFeedback(const NavigationStep* step = nullptr);
   void watchProgress(const ros::Time& stamp);
   void completeTraversal(const ros::Time& stamp);
+
+  // Where on the path the robot is: repeat_navigator_place.cpp.
+  void beginLocalisation();
+  void seekPlace(const sensor_msgs::ImageConstPtr& image, const cv::Mat& grey, double travelled_m);
+  void onPlaceSought(const sensor_msgs::ImageConstPtr& image, const std::optional<PlaceGuess>& place);
+  void startAt(const PlaceGuess& place, const ros::Time& stamp);
+  void prepare(const std::string& doing);
+  bool drivenByHand() const { return gate_.permit().kind == MotionPermit::Kind::kManual; }
 
   void fail(const std::string& reason);
   /// Ends the run: stops the robot and, unless it has been ended already, forgets the open traversal.
@@ -76,10 +87,12 @@ class RepeatNavigator {
   ros::NodeHandle nh_;
   RepeatNavigatorSettings settings_;
   Odometer odometer_;
+  RestartWatch odometry_watch_;
   ImageQueue images_;
   ImageWatch image_watch_;
   NavigationSupervisor supervisor_;
   TraversalClient traversals_;
+  Localiser localiser_;
   CommandGate gate_;
   SafetyInputs inputs_;
   std::unique_ptr<RepeatRun> run_;

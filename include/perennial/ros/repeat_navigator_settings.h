@@ -7,6 +7,7 @@
 #include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/odometer.h"
 #include "perennial/core/parameter_reader.h"
+#include "perennial/core/place_finder.h"
 #include "perennial/core/repeat_session.h"
 
 namespace perennial {
@@ -20,11 +21,12 @@ struct RepeatNavigatorSettings {
   double stall_timeout_s =
       5.0;  ///< driving for so long without the odometry moving: the goal fails; 0: never
 
-  RepeatSettings repeat;          ///< groups extraction, registration, steering, along_path
-  OdometerSettings odometer;      ///< group odometer
-  SupervisorSettings supervisor;  ///< group supervisor, with the time-outs above
-  VelocityLimits limits;          ///< group limits
-  InterlockSettings interlock;    ///< groups dead_man, obstacles, teleop
+  RepeatSettings repeat;              ///< groups extraction, registration, steering, along_path
+  OdometerSettings odometer;          ///< group odometer
+  LocalisationSettings localisation;  ///< group localisation
+  SupervisorSettings supervisor;      ///< group supervisor, with the time-outs above
+  VelocityLimits limits;              ///< group limits
+  InterlockSettings interlock;        ///< groups dead_man, obstacles, teleop
 
   /// The parameters of the node itself.
   static RepeatNavigatorSettings load(ParameterReader& reader);

@@ -17,8 +17,11 @@ namespace perennial {
 struct RepeatRun {
   perennial_nav::RepeatGoal goal;
   std::unique_ptr<RepeatSession> session;  ///< from when the map has been opened
+  std::size_t local_maps = 0;              ///< of the whole path
   std::uint32_t number = 1;                ///< of the current traversal, from 1
   double start_m = 0.0;                    ///< where along the path the current traversal began
+  double begun_m = 0.0;                    ///< where the first one began
+  double certainty = 0.0;                  ///< of that place, 0 to 1, if the robot found it by itself
   double driven_m = 0.0;                   ///< in the traversals before the current one
   double travelled_m = 0.0;                ///< by the odometer, at the newest image
   ros::Time started;                       ///< when the goal came

@@ -16,6 +16,7 @@
 #include <ros/ros.h>
 
 #include "perennial/core/odometer.h"
+#include "perennial/core/restart_watch.h"
 #include "perennial/core/teach_session.h"
 #include "perennial/ros/image_queue.h"
 #include "perennial_nav/ExtractionConfig.h"
@@ -73,6 +74,7 @@ class TeachRecorder {
 
   std::unique_ptr<TeachSession> session_;
   Odometer odometer_;
+  RestartWatch odometry_watch_;
   ImageQueue images_;
   std::optional<Velocity> last_command_;
   geometry_msgs::PoseStamped newest_pose_;

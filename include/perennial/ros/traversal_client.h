@@ -3,10 +3,13 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "perennial/core/active_map.h"
 #include "perennial_nav/BeginTraversalResponse.h"
 #include "perennial_nav/Registration.h"
 
@@ -23,6 +26,10 @@ class TraversalClient {
   perennial_nav::BeginTraversalResponse begin(const std::string& map, double start_m, const ros::Time& stamp);
   /// Nothing happens when no traversal is open. Returns how many local maps learned something.
   std::uint32_t end(bool commit, const ros::Time& stamp);
+
+  /// Local maps of the open traversal from index `first` on, at most `count` of them; none behind the path's
+  /// end.
+  std::vector<ActiveMap> localMaps(std::size_t first, std::size_t count);
 
   /// `registration.traversal` is filled in.
   void publish(perennial_nav::Registration registration);
@@ -41,6 +48,7 @@ class TraversalClient {
   std::multiset<std::string> listeners_;  ///< nodes that are connected to `registration`
   ros::Publisher publisher_;
   ros::ServiceClient begin_;
+  ros::ServiceClient local_maps_;   ///< persistent once it was needed
   mutable ros::ServiceClient end_;  ///< persistent while a traversal is open
   bool open_ = false;
   std::uint32_t id_ = 0;

@@ -16,6 +16,7 @@ CameleonDriverSettings CameleonDriverSettings::load(ParameterReader& reader) {
   settings.frames.flipper_joint = reader.text("flipper_joint", settings.frames.flipper_joint);
   settings.command_rate_hz = reader.real("command_rate_hz", settings.command_rate_hz, 2.0, 25.0);
   settings.command_timeout_s = reader.real("command_timeout_s", settings.command_timeout_s, 0.05, 10.0);
+  settings.command_settle_s = reader.real("command_settle_s", settings.command_settle_s, 0.0, 10.0);
   settings.status_timeout_s = reader.real("status_timeout_s", settings.status_timeout_s, 0.2, 60.0);
   settings.master_timeout_s = reader.real("master_timeout_s", settings.master_timeout_s, 0.5, 60.0);
   settings.battery_low_percent = reader.real("battery_low_percent", settings.battery_low_percent, 0.0, 100.0);

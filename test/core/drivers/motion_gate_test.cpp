@@ -18,8 +18,8 @@ VelocityLimits quickLimits() {
   return limits;
 }
 
-MotionGate connectedGate(const VelocityLimits& limits = quickLimits()) {
-  MotionGate gate(limits, 0.5);
+MotionGate connectedGate(const VelocityLimits& limits = quickLimits(), double settle_s = 0.0) {
+  MotionGate gate(limits, 0.5, settle_s);
   gate.setConnected(true);
   gate.next(0.0);
   return gate;
@@ -57,6 +57,31 @@ TEST(MotionGate, stopsAfterTheTimeOut) {
   EXPECT_EQ(gate.next(1.2), kZero) << "a stale command does not come back";
   gate.command(kAhead, 2.0);
   EXPECT_EQ(gate.next(2.05), kAhead);
+}
+
+TEST(MotionGate, obeysAfterAPauseOnlyWhenCommandsGoOnComing) {
+  MotionGate gate = connectedGate(quickLimits(), 0.2);
+  for (const double begin_s : {1.0, 2.0}) {  // the first one ever, and after a time-out
+    gate.command(kAhead, begin_s);
+    EXPECT_EQ(gate.next(begin_s + 0.05), kZero);
+    gate.command(kAhead, begin_s + 0.1);
+    EXPECT_EQ(gate.next(begin_s + 0.4), kZero) << "it is commands that count, not time";
+    gate.command(kAhead, begin_s + 0.41);
+    EXPECT_EQ(gate.next(begin_s + 0.42), kAhead);
+  }
+}
+
+TEST(MotionGate, doesNotObeyCommandsThatWereHeldBack) {
+  MotionGate gate = connectedGate(quickLimits(), 0.2);
+  for (int i = 0; i < 10; ++i) {
+    gate.command(kAhead, 1.0 + 0.1 * i);
+  }
+  ASSERT_EQ(gate.next(1.91), kAhead);
+  for (int i = 0; i < 5; ++i) {
+    gate.command(kAhead, 3.0 + 0.001 * i);  // late and all at once, with no tick since they stopped
+  }
+  EXPECT_EQ(gate.next(3.05), kZero);
+  EXPECT_EQ(gate.next(3.45), kZero);
 }
 
 TEST(MotionGate, aClockPutBackStops) {

@@ -12,6 +12,7 @@ import rospy
 import rostest
 from nav_msgs.msg import Odometry
 from std_msgs.msg import Bool
+from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from robot_bench import RobotBench  # noqa: E402
@@ -124,6 +125,23 @@ class CameleonStopTest(unittest.TestCase):
         self.bench.wait_until_moving("a fresh command moves it once the stop is cleared")
         stop.unregister()
         subscriber.unregister()
+
+    def test_broadcasts_transforms_only_where_they_are_wanted(self):
+        for wanted in (False, True):
+            transforms, poses = [], []
+            subscribers = [rospy.Subscriber("/tf", TFMessage, transforms.append),
+                           rospy.Subscriber("/odom", Odometry, poses.append)]
+            driver = self.start_driver("_publish_tf:=%s" % str(wanted).lower())
+            self.bench.wait_for(lambda: subscribers[0].get_num_connections() > 0, "the driver's transforms")
+            self.bench.wait_for(lambda: len(poses) > 50, "odometry")
+            if wanted:
+                self.bench.wait_for(lambda: transforms, "transforms")
+            else:
+                self.assertEqual(transforms, [])
+            driver.terminate()
+            driver.wait(10.0)
+            for subscriber in subscribers:
+                subscriber.unregister()
 
     def test_refuses_wrong_parameters(self):
         for index, (key, value) in enumerate((("max_forward_mps", -1), ("no_such_parameter", 1), ("robot_port", 70000))):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The real camera driver on simulated devices: images to the byte, controls, inertial data, and every fault."""
+import collections
 import os
 import sys
 import unittest
@@ -134,6 +135,24 @@ class TaraTest(unittest.TestCase):
         self.reconfigure.update_configuration({"accelerometer_range": 0, "imu_rate": 3})
         self.bench.wait_for(lambda: abs(self.gravity[-1] - 9.80665) < 0.0005, "the first range")
         self.assertLess(max(abs(value - 9.80665) for value in self.gravity[first:]), 0.001)
+
+    def test_inertial_data_comes_at_its_rate(self):
+        stamps = collections.deque(maxlen=100)
+
+        def on_imu(message):
+            with self.bench.changed:
+                stamps.append(message.header.stamp.to_sec())
+                self.bench.changed.notify_all()
+
+        def rate():
+            return (len(stamps) - 1) / (stamps[-1] - stamps[0]) if len(stamps) == stamps.maxlen else 0.0
+
+        subscriber = rospy.Subscriber("/tara/imu", Imu, on_imu, tcp_nodelay=True)
+        for code, wanted in ((4, 238.0), (2, 59.5), (3, 119.0)):
+            self.reconfigure.update_configuration({"imu_rate": code})
+            # Not at once: the window of the last messages has to fill, and a busy computer delays some of them.
+            self.bench.wait_for(lambda w=wanted: abs(rate() / w - 1.0) < 0.1, "%.1f inertial readings a second" % wanted)
+        subscriber.unregister()
 
     def test_diagnostics_name_the_camera(self):
         self.bench.wait_for(lambda: self.values.get("unique id") == "2560c114", "unique id")

@@ -28,6 +28,7 @@ struct CameleonDriverSettings {
   CameleonFrames frames;
   double command_rate_hz = 20.0;   ///< the robot takes one command per loop of 40 ms
   double command_timeout_s = 0.5;  ///< the robot stops when no cmd_vel came for so long
+  double command_settle_s = 0.2;   ///< after a pause, cmd_vel must have been coming for so long to be obeyed
   double status_timeout_s = 0.5;   ///< a robot that is silent for so long is connected to anew
   double master_timeout_s = 2.0;   ///< the robot stops when the ROS master has been gone for so long
   double battery_low_percent = 20.0;
