@@ -15,6 +15,7 @@ perennial_gtest(features_test
   core/features/hessian_pyramid_test.cpp
   core/features/integral_image_test.cpp
   core/features/maxima_test.cpp
+  core/features/orientation_descriptor_test.cpp
   core/features/repeatability_test.cpp
   core/features/surf_detector_test.cpp
   LIBRARIES opencv_imgproc opencv_imgcodecs

@@ -10,6 +10,7 @@ void toConfig(const ExtractionSettings& settings, perennial_nav::ExtractionConfi
   config.half_resolution = settings.half_resolution;
   config.bucket_columns = settings.bucket_columns;
   config.bucket_rows = settings.bucket_rows;
+  config.descriptor = nameOf(settings.descriptor);
 }
 
 void toConfig(const RegistrationSettings& settings, perennial_nav::RegistrationConfig& config) {
@@ -36,6 +37,7 @@ ExtractionSettings fromConfig(const perennial_nav::ExtractionConfig& config) {
   settings.half_resolution = config.half_resolution;
   settings.bucket_columns = config.bucket_columns;
   settings.bucket_rows = config.bucket_rows;
+  settings.descriptor = descriptorKind(config.descriptor).value_or(settings.descriptor);
   return settings;
 }
 

@@ -1,12 +1,13 @@
 // Teach and repeat in the embedded world, on the core alone: the loop is closed through rendered images.
+#include "park/closed_loop.h"
+
+#include <gtest/gtest.h>
+
 #include <cstdio>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
-
-#include "park/closed_loop.h"
 #include "perennial/strategies/score_based.h"
 #include "perennial/strategies/static_map.h"
 
@@ -57,6 +58,7 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
     const char* name;
     RegistrationMethod method;
     bool half_and_buckets;
+    DescriptorKind descriptor;
     double min_confidence;
   };
   const std::vector<std::pair<const char*, park::Weather>> whens{
@@ -67,14 +69,19 @@ TEST_F(ClosedLoop, DISABLED_comparesRegistrations) {
       {"2026-10-20T12:00:00Z", park::Weather::kOvercast}};
   may_get_lost_ = true;
   for (const Setting& setting :
-       {Setting{"histogram, full", RegistrationMethod::kHistogram, false, 0.0},
-        Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, 0.0},
-        Setting{"robust, full", RegistrationMethod::kRobust, false, 0.0},
-        Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, 0.0},
-        Setting{"the same, the default", RegistrationMethod::kRobust, true, 0.4}}) {
+       {Setting{"robust, orientations", RegistrationMethod::kRobust, true, DescriptorKind::kOrientation, 0.0},
+        Setting{"the same, the default", RegistrationMethod::kRobust, true, DescriptorKind::kOrientation,
+                0.4},
+        Setting{"robust, half + buckets", RegistrationMethod::kRobust, true, DescriptorKind::kIntensity, 0.0},
+        Setting{"the same, from 0.4", RegistrationMethod::kRobust, true, DescriptorKind::kIntensity, 0.4},
+        Setting{"robust, full", RegistrationMethod::kRobust, false, DescriptorKind::kIntensity, 0.0},
+        Setting{"histogram, half + buckets", RegistrationMethod::kHistogram, true, DescriptorKind::kIntensity,
+                0.0},
+        Setting{"histogram, full", RegistrationMethod::kHistogram, false, DescriptorKind::kIntensity, 0.0}}) {
     settings_.registration.method = setting.method;
     settings_.registration.min_confidence = setting.min_confidence;
     settings_.extraction = setting.half_and_buckets ? ExtractionSettings() : ExtractionSettings::published();
+    settings_.extraction.descriptor = setting.descriptor;
     park::ParkSettings park_settings;
     park_settings.image_rate_hz = 5;
     park::ParkSimulation park(park_settings, {});

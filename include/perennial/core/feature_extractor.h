@@ -1,14 +1,26 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <string>
-
 #include <opencv2/core.hpp>
+#include <optional>
+#include <string>
 
 #include "perennial/core/feature.h"
 #include "perennial/core/parameter_reader.h"
 
 namespace perennial {
+
+/// What descriptors compare.
+enum class DescriptorKind : std::uint8_t {
+  kIntensity = 0,    ///< smoothed intensities, as published
+  kOrientation = 1,  ///< mainly orientations of edges: unchanged when contrasts turn over
+};
+
+/// "intensity" or "orientation".
+const char* nameOf(DescriptorKind kind);
+/// None for another name.
+std::optional<DescriptorKind> descriptorKind(const std::string& name);
 
 /// What is extracted from an image. A map is usable only with the settings it was taught with, see
 /// `describe()`.
@@ -28,12 +40,14 @@ struct ExtractionSettings {
   /// are.
   int bucket_columns = 16;
   int bucket_rows = 8;
+  DescriptorKind descriptor = DescriptorKind::kOrientation;  ///< "intensity" or "orientation"
 
-  /// As in the reference: full resolution, the strongest N wherever they are.
+  /// As in the reference: full resolution, the strongest N wherever they are, intensities compared.
   static ExtractionSettings published() {
     ExtractionSettings settings;
     settings.half_resolution = false;
     settings.bucket_columns = settings.bucket_rows = 1;
+    settings.descriptor = DescriptorKind::kIntensity;
     return settings;
   }
 
@@ -41,12 +55,12 @@ struct ExtractionSettings {
   static ExtractionSettings load(ParameterReader& reader);
 
   /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...".
-  /// Resolution and buckets are named only when they are not the published ones, so that maps from before
-  /// they existed stay usable.
+  /// Resolution, buckets and kind of descriptor are named only when they are not the published ones, so that
+  /// maps from before they existed stay usable.
   std::string describe() const;
 };
 
-/// Detects upright SURF keypoints and describes them by BRIEF.
+/// Detects upright SURF keypoints and describes them by 256 bits.
 ///
 /// The result depends on the image and the settings only: the threshold that adapts from frame to frame
 /// decides how much work is done, never what comes out (see surf_detector.h). Features are ordered by falling

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
+#include "core/features/box_sums.h"
 #include "core/features/brief_pattern.h"
 #include "core/features/integral_image.h"
 #include "core/features/patch_margin.h"
@@ -21,7 +17,7 @@ namespace perennial {
 /// one thread.
 class BriefDescriptor {
  public:
-  static constexpr int kSmoothing = 9;  ///< side of the smoothing box, px
+  static constexpr int kSmoothing = BoxSums::kSide;
   static constexpr PatchMargin kMargin{
       kBriefPatch / 2 + kSmoothing / 2,  ///< the patch and the smoothing around it
       kBriefPatch / 2 - 1 + kSmoothing / 2};
@@ -33,17 +29,8 @@ class BriefDescriptor {
   Descriptor describe(const Pixel& centre) const noexcept;
 
  private:
-  void placePattern();
-
-  int columns_ = 0;
-  std::vector<std::uint16_t>
-      smoothed_;  ///< box sums (no division: only comparisons count); edges are not set
-  std::array<std::ptrdiff_t, Descriptor::kBits> first_{};  ///< offsets of the tests' places in `smoothed_`
-  std::array<std::ptrdiff_t, Descriptor::kBits> second_{};
+  BoxSums smoothed_;
+  BriefOffsets offsets_;
 };
-
-/// Sums over boxes of `side` px a row, for `count` boxes: `above` and `below` are rows of the integral image.
-void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
-               std::uint16_t* sums) noexcept;
 
 }  // namespace perennial

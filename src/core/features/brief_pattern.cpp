@@ -54,4 +54,16 @@ constexpr std::array<BriefTest, Descriptor::kBits> kBriefPattern{{
 }};
 // clang-format on
 
+void BriefOffsets::place(int columns) {
+  if (columns_ == columns) {
+    return;
+  }
+  columns_ = columns;
+  for (std::size_t i = 0; i < Descriptor::kBits; ++i) {
+    const BriefTest& test = kBriefPattern[i];
+    first_[i] = static_cast<std::ptrdiff_t>(test.y1) * columns + test.x1;
+    second_[i] = static_cast<std::ptrdiff_t>(test.y2) * columns + test.x2;
+  }
+}
+
 }  // namespace perennial

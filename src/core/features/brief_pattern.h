@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "perennial/core/feature.h"
@@ -31,5 +32,21 @@ constexpr int kBriefPatch = 48;
 ///    the coordinate is floor(t * 96 / 655360 + 1/2), drawn again until it is within -24..23;
 ///  - a test: x1, y1, x2, y2 in this order, drawn again when both places are the same.
 extern const std::array<BriefTest, Descriptor::kBits> kBriefPattern;
+
+/// The pattern's places in an image of some width, as offsets from the keypoint's pixel.
+class BriefOffsets {
+ public:
+  void place(int columns);
+
+  /// Whether the value at the first place of test `i` is less than at the second.
+  std::uint64_t test(std::size_t i, const std::uint16_t* centre) const noexcept {
+    return centre[first_[i]] < centre[second_[i]] ? 1 : 0;
+  }
+
+ private:
+  int columns_ = 0;
+  std::array<std::ptrdiff_t, Descriptor::kBits> first_{};
+  std::array<std::ptrdiff_t, Descriptor::kBits> second_{};
+};
 
 }  // namespace perennial

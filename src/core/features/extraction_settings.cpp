@@ -27,6 +27,19 @@ std::string exactText(double value) {
 
 }  // namespace
 
+const char* nameOf(DescriptorKind kind) {
+  return kind == DescriptorKind::kOrientation ? "orientation" : "intensity";
+}
+
+std::optional<DescriptorKind> descriptorKind(const std::string& name) {
+  for (const auto kind : {DescriptorKind::kIntensity, DescriptorKind::kOrientation}) {
+    if (name == nameOf(kind)) {
+      return kind;
+    }
+  }
+  return std::nullopt;
+}
+
 ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
   ExtractionSettings settings;
   settings.features = reader.integer("features", settings.features, 1, 10000);
@@ -36,6 +49,10 @@ ExtractionSettings ExtractionSettings::load(ParameterReader& reader) {
   settings.half_resolution = reader.boolean("half_resolution", settings.half_resolution);
   settings.bucket_columns = reader.integer("bucket_columns", settings.bucket_columns, 1, 100);
   settings.bucket_rows = reader.integer("bucket_rows", settings.bucket_rows, 1, 100);
+  const std::string descriptor =
+      reader.choice("descriptor", nameOf(settings.descriptor),
+                    {nameOf(DescriptorKind::kIntensity), nameOf(DescriptorKind::kOrientation)});
+  settings.descriptor = descriptorKind(descriptor).value_or(settings.descriptor);
   return settings;
 }
 
@@ -48,6 +65,9 @@ std::string ExtractionSettings::describe() const {
   }
   if (bucket_columns * bucket_rows > 1) {
     text += " buckets=" + std::to_string(bucket_columns) + "x" + std::to_string(bucket_rows);
+  }
+  if (descriptor != DescriptorKind::kIntensity) {
+    text += std::string(" descriptor=") + nameOf(descriptor);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include "core/features/brief_descriptor.h"
 #include "core/features/half_image.h"
 #include "core/features/integral_image.h"
+#include "core/features/orientation_descriptor.h"
 #include "core/features/surf_detector.h"
 #include "perennial/core/error.h"
 
@@ -17,7 +18,8 @@ ExtractionSettings checked(const ExtractionSettings& settings) {
                           {"min_response", settings.min_response},
                           {"half_resolution", settings.half_resolution},
                           {"bucket_columns", settings.bucket_columns},
-                          {"bucket_rows", settings.bucket_rows}});
+                          {"bucket_rows", settings.bucket_rows},
+                          {"descriptor", nameOf(settings.descriptor)}});
   return ExtractionSettings::load(reader);
 }
 
@@ -30,8 +32,28 @@ struct FeatureExtractor::Implementation {
   cv::Mat half;
   IntegralImage integral;
   SurfDetector detector;
-  BriefDescriptor descriptor;
+  BriefDescriptor intensity;
+  OrientationDescriptor orientation;
+
+  void describe(const cv::Mat& image, const std::vector<Keypoint>& keypoints, FeatureSet& features);
 };
+
+void FeatureExtractor::Implementation::describe(const cv::Mat& image, const std::vector<Keypoint>& keypoints,
+                                                FeatureSet& features) {
+  const bool oriented = settings.descriptor == DescriptorKind::kOrientation;
+  if (oriented) {
+    orientation.prepare(image, integral);
+  } else {
+    intensity.prepare(integral);
+  }
+  features.clear();
+  features.reserve(keypoints.size());
+  for (const Keypoint& keypoint : keypoints) {
+    const Pixel centre = nearestPixel(keypoint);
+    features.add(settings.half_resolution ? inFullImage(keypoint) : keypoint,
+                 oriented ? orientation.describe(centre) : intensity.describe(centre));
+  }
+}
 
 FeatureExtractor::FeatureExtractor(const ExtractionSettings& settings)
     : implementation_(std::make_unique<Implementation>(settings)) {}
@@ -52,18 +74,12 @@ void FeatureExtractor::extractInto(const cv::Mat& image, FeatureSet& features) {
                      std::to_string(image.depth()) + "; convert the image first");
   }
   Implementation& parts = *implementation_;
-  const bool halve = parts.settings.half_resolution;
-  if (halve) {
+  if (parts.settings.half_resolution) {
     halveImage(image, parts.half);
   }
-  parts.integral.compute(halve ? parts.half : image);
-  const std::vector<Keypoint>& keypoints = parts.detector.detect(parts.integral, BriefDescriptor::kMargin);
-  parts.descriptor.prepare(parts.integral);
-  features.clear();
-  features.reserve(keypoints.size());
-  for (const Keypoint& keypoint : keypoints) {
-    features.add(halve ? inFullImage(keypoint) : keypoint, parts.descriptor.describe(nearestPixel(keypoint)));
-  }
+  const cv::Mat& searched = parts.settings.half_resolution ? parts.half : image;
+  parts.integral.compute(searched);
+  parts.describe(searched, parts.detector.detect(parts.integral, BriefDescriptor::kMargin), features);
 }
 
 const ExtractionSettings& FeatureExtractor::settings() const { return implementation_->settings; }

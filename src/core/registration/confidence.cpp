@@ -14,7 +14,7 @@ constexpr double kPrior = 4.0;
 
 double robustConfidence(const VotePeak& peak) {
   const double log_lead = std::log((peak.height + kPrior) / (peak.second_height + kPrior));
-  return logistic(-0.774 + 6.083 * log_lead);
+  return logistic(-0.689 + 6.504 * log_lead);
 }
 
 double histogramConfidence(int inliers) {

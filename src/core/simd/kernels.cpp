@@ -3,8 +3,9 @@
 #include <atomic>
 
 #include "core/features/box_hessian.h"
-#include "core/features/brief_descriptor.h"
+#include "core/features/box_sums.h"
 #include "core/features/maxima.h"
+#include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
 #include "core/simd/vector_kernels.h"
 
@@ -18,7 +19,7 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
 
 constexpr Kernels kScalar{"scalar",        differenceColumns, false,    differenceColumnsXxYy,
                           hessianRowAbove, scalarHessianRow,  nextPeak, boxSumRow,
-                          hammingDistances};
+                          orientationRow,  hammingDistances};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

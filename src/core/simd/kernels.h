@@ -34,9 +34,12 @@ struct Kernels {
   /// See nextPeak() in maxima.h.
   int (*next_peak)(const float* up, const float* here, const float* down, int begin, int end,
                    float threshold);
-  /// See boxSumRow() in brief_descriptor.h.
+  /// See boxSumRow() in box_sums.h.
   void (*box_sum_row)(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
                       std::uint16_t* sums);
+  /// See orientationRow() in orientation_image.h.
+  void (*orientation_row)(const std::uint16_t* up, const std::uint16_t* here, const std::uint16_t* down,
+                          int count, std::uint8_t* cosine, std::uint8_t* sine);
   /// See hammingDistances() in descriptor_table.h.
   void (*hamming_distances)(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                             std::size_t end, std::uint16_t* distances);

@@ -6,8 +6,9 @@
 #include <algorithm>
 
 #include "core/features/box_hessian.h"
-#include "core/features/brief_descriptor.h"
+#include "core/features/box_sums.h"
 #include "core/features/maxima.h"
+#include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
 
 // Native population counts and the like, where there are any.
@@ -168,6 +169,40 @@ void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side,
   perennial::boxSumRow(above + x, below + x, side, count - x, sums + x);
 }
 
+void orientationRow(const std::uint16_t* up, const std::uint16_t* here, const std::uint16_t* down, int count,
+                    std::uint8_t* HWY_RESTRICT cosine, std::uint8_t* HWY_RESTRICT sine) {
+  const hn::ScalableTag<std::int32_t> i32;
+  const hn::Rebind<std::uint16_t, decltype(i32)> u16;
+  const hn::Rebind<std::uint8_t, decltype(i32)> u8;
+  const Float noise = hn::Set(kFloat, kOrientationNoise);
+  const Float amplitude = hn::Set(kFloat, 127.0F);
+  const Float middle = hn::Set(kFloat, 128.0F);
+  const int lanes = static_cast<int>(hn::Lanes(i32));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto at = [=](const std::uint16_t* row)
+                        HWY_ATTR { return hn::PromoteTo(i32, hn::LoadU(u16, row + i)); };
+    const auto twice = [](auto value) HWY_ATTR { return hn::Add(value, value); };
+    const auto rising = hn::Sub(at(down + 2), at(up));
+    const auto falling = hn::Sub(at(up + 2), at(down));
+    const auto dx = hn::Add(hn::Add(rising, falling), twice(hn::Sub(at(here + 2), at(here))));
+    const auto dy = hn::Add(hn::Sub(rising, falling), twice(hn::Sub(at(down + 1), at(up + 1))));
+    const Float x = hn::ConvertTo(kFloat, dx);
+    const Float y = hn::ConvertTo(kFloat, dy);
+    const Float xx = hn::Mul(x, x);
+    const Float yy = hn::Mul(y, y);
+    const Float xy = hn::Mul(x, y);
+    const Float scale = hn::Div(amplitude, hn::Add(hn::Add(xx, yy), noise));
+    const auto store = [=](Float value, std::uint8_t* to) HWY_ATTR {
+      const auto whole = hn::ConvertTo(i32, hn::Add(hn::Mul(value, scale), middle));
+      hn::StoreU(hn::DemoteTo(u8, whole), u8, to + i);
+    };
+    store(hn::Sub(xx, yy), cosine);
+    store(hn::Add(xy, xy), sine);
+  }
+  perennial::orientationRow(up + i, here + i, down + i, count - i, cosine + i, sine + i);
+}
+
 void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                       std::size_t end, std::uint16_t* HWY_RESTRICT distances) {
   const hn::Rebind<std::uint16_t, hn::ScalableTag<std::uint64_t>> u16;
@@ -196,7 +231,7 @@ const Kernels* vectorKernels() {
                                                                  : "baseline";
   static constexpr Kernels kTable{kName,           differenceColumns, true,     differenceColumnsXxYy,
                                   hessianRowAbove, hessianRow,        nextPeak, boxSumRow,
-                                  hammingDistances};
+                                  orientationRow,  hammingDistances};
   return &kTable;
 }
 

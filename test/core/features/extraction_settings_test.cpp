@@ -21,12 +21,16 @@ ExtractionSettings load(const Parameters& parameters) {
 }
 
 TEST(ExtractionSettings, loadsEveryMember) {
-  const ExtractionSettings settings =
-      load({{"features", 123}, {"octaves", 2}, {"layers", 5}, {"min_response", 0.25}});
+  const ExtractionSettings settings = load({{"features", 123},
+                                            {"octaves", 2},
+                                            {"layers", 5},
+                                            {"min_response", 0.25},
+                                            {"descriptor", "intensity"}});
   EXPECT_EQ(settings.features, 123);
   EXPECT_EQ(settings.octaves, 2);
   EXPECT_EQ(settings.layers, 5);
   EXPECT_EQ(settings.min_response, 0.25);
+  EXPECT_EQ(settings.descriptor, DescriptorKind::kIntensity);
 }
 
 TEST(ExtractionSettings, defaultsAreTheStructsOwn) {
@@ -34,9 +38,10 @@ TEST(ExtractionSettings, defaultsAreTheStructsOwn) {
 }
 
 TEST(ExtractionSettings, refusesWhatIsOutOfRange) {
-  const std::vector<Parameters> wrong = {{{"features", 0}},        {{"features", 10001}},   {{"octaves", 0}},
-                                         {{"octaves", 7}},         {{"layers", 0}},         {{"layers", 7}},
-                                         {{"min_response", -0.1}}, {{"min_response", 1.1}}, {{"feature", 5}}};
+  const std::vector<Parameters> wrong = {{{"features", 0}},         {{"features", 10001}},   {{"octaves", 0}},
+                                         {{"octaves", 7}},          {{"layers", 0}},         {{"layers", 7}},
+                                         {{"min_response", -0.1}},  {{"min_response", 1.1}}, {{"feature", 5}},
+                                         {{"descriptor", "colour"}}};
   for (const Parameters& parameters : wrong) {
     EXPECT_THROW(load(parameters), ParameterError) << parameters.begin()->first;
   }
@@ -55,18 +60,27 @@ TEST(ExtractionSettings, descriptionIsReadable) {
   EXPECT_EQ(ExtractionSettings::published().describe(),
             "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06");
   EXPECT_EQ(ExtractionSettings().describe(),
+            "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 half_resolution=1 buckets=16x8 "
+            "descriptor=orientation");
+}
+
+TEST(ExtractionSettings, intensityIsDescribedAsBeforeItHadANameSoThatOldMapsStayUsable) {
+  ExtractionSettings settings;
+  settings.descriptor = DescriptorKind::kIntensity;
+  EXPECT_EQ(settings.describe(),
             "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 half_resolution=1 buckets=16x8");
 }
 
 TEST(ExtractionSettings, differentSettingsAreDescribedDifferently) {
   std::set<std::string> texts;
-  std::vector<ExtractionSettings> all(7);
+  std::vector<ExtractionSettings> all(8);
   all[1].features = 501;
   all[2].octaves = 3;
   all[3].layers = 4;
   all[4].min_response = 0.0;
   all[5].min_response = 3.1e-6;
   all[6].min_response = std::nextafter(3e-6, 1.0);
+  all[7].descriptor = DescriptorKind::kIntensity;
   for (const ExtractionSettings& settings : all) {
     texts.insert(settings.describe());
   }

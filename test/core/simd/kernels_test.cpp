@@ -10,6 +10,7 @@
 #include "core/features/box_hessian.h"
 #include "core/features/integral_image.h"
 #include "core/features/maxima.h"
+#include "core/features/orientation_image.h"
 #include "core/features/synthetic_images.h"
 #include "core/registration/descriptor_table.h"
 #include "perennial/core/feature_extractor.h"
@@ -31,7 +32,9 @@ class EachPath : public ::testing::TestWithParam<std::size_t> {
 std::vector<ExtractionSettings> kindsOfExtraction() {
   ExtractionSettings few = ExtractionSettings::published();
   few.features = 40;
-  return {ExtractionSettings::published(), few, ExtractionSettings()};
+  ExtractionSettings intensity;
+  intensity.descriptor = DescriptorKind::kIntensity;
+  return {ExtractionSettings::published(), few, intensity, ExtractionSettings()};
 }
 
 TEST_P(EachPath, isTheOneInUse) { EXPECT_STREQ(kernels().name, path().name); }
@@ -137,6 +140,34 @@ TEST_P(EachPath, distancesAreThoseOfTwoDescriptors) {
       EXPECT_EQ(distances[j - begin], hammingDistance(one, others[j]));
     }
     EXPECT_EQ(distances.back(), 9999) << "nothing is written beyond";
+  }
+}
+
+TEST_P(EachPath, orientationsAreTheSame) {
+  // Smooth, as it is, rough, and the steepest there can be.
+  std::mt19937 random(5);
+  std::vector<std::uint16_t> rows[3];
+  for (auto& row : rows) {
+    for (int i = 0; i < 205; ++i) {
+      const int kind = i / 70;
+      const auto value = kind == 0   ? 2000 + random() % 40
+                         : kind == 1 ? random() % 4081
+                                     : 4080 * (random() % 2);
+      row.push_back(static_cast<std::uint16_t>(value));
+    }
+  }
+  for (const int count : {0, 1, 7, 16, 63, 203}) {
+    const auto size = static_cast<std::size_t>(count) + 1;
+    std::vector<std::uint8_t> found[2]{std::vector<std::uint8_t>(size, 7),
+                                       std::vector<std::uint8_t>(size, 7)};
+    auto expected = found[0];
+    auto expected_sine = found[1];
+    kernels().orientation_row(rows[0].data(), rows[1].data(), rows[2].data(), count, found[0].data(),
+                              found[1].data());
+    orientationRow(rows[0].data(), rows[1].data(), rows[2].data(), count, expected.data(),
+                   expected_sine.data());
+    EXPECT_EQ(found[0], expected) << count;
+    EXPECT_EQ(found[1], expected_sine) << count;
   }
 }
 
