@@ -9,6 +9,8 @@ perennial_gtest(evaluation_test
   LIBRARIES perennial_evaluation perennial_strategies opencv_imgproc opencv_imgcodecs
   DEFINITIONS SWEEPS="${PROJECT_SOURCE_DIR}/config/sweeps"
 )
+# What reads the reference system's files and tables is in the core.
+set_property(GLOBAL APPEND PROPERTY perennial_core_tests evaluation_test)
 perennial_gtest(evaluation_tools_test evaluation/tools_test.cpp
   LIBRARIES opencv_imgproc opencv_imgcodecs
   DEFINITIONS EVALUATE="$<TARGET_FILE:evaluate>" REPORT="$<TARGET_FILE:report>"
