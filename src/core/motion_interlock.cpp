@@ -15,6 +15,21 @@ bool fresh(const std::optional<double>& stamp_s, double now_s, double timeout_s)
   return stamp_s && now_s >= *stamp_s && now_s - *stamp_s <= timeout_s;
 }
 
+/// What a single reading says: a distance, infinity for nothing within reach, NaN for nothing known.
+double rangeOf(float reading, const ScanView& scan) {
+  const auto range_m = static_cast<double>(reading);
+  if (!(scan.range_max > std::max(scan.range_min, 0.0)) || std::isnan(range_m)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (range_m > scan.range_max) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (std::isinf(range_m)) {
+    return std::max(scan.range_min, 0.0);
+  }
+  return range_m > 0.0 ? range_m : std::numeric_limits<double>::quiet_NaN();
+}
+
 double finiteOrZero(double value) { return std::isfinite(value) ? value : 0.0; }
 
 MotionPermit stop(std::string reason) { return {MotionPermit::Kind::kStop, 0.0, std::move(reason), {}}; }
@@ -169,22 +184,22 @@ MotionPermit MotionInterlock::at(double now_s) const {
   return byObstacles();
 }
 
-double nearestInCorridor(const float* ranges, std::size_t count, double angle_min, double angle_increment,
-                         double range_min, double range_max, double half_width_m) {
+double nearestInCorridor(const ScanView& scan, const Corridor& corridor) {
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool too_near = std::isinf(ranges[i]) && ranges[i] < 0.0F;
-    const double range_m = too_near ? range_min : static_cast<double>(ranges[i]);
-    if (!(range_m >= range_min && range_m <= range_max)) {
+  bool looked = false;
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    const double range_m = rangeOf(scan.ranges[i], scan);
+    const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    if (std::isnan(range_m) || !(std::cos(angle) > 0.0)) {
       continue;
     }
-    const double angle = angle_min + static_cast<double>(i) * angle_increment;
-    const double ahead_m = range_m * std::cos(angle);
-    if (ahead_m > 0.0 && std::abs(range_m * std::sin(angle)) <= half_width_m) {
-      nearest_m = std::min(nearest_m, ahead_m);
+    const double sideways = std::abs(std::sin(angle));
+    looked = looked || sideways * corridor.depth_m <= corridor.half_width_m;
+    if (std::isfinite(range_m) && sideways * range_m <= corridor.half_width_m) {
+      nearest_m = std::min(nearest_m, range_m * std::cos(angle));
     }
   }
-  return nearest_m;
+  return looked ? nearest_m : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace perennial

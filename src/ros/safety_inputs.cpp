@@ -11,11 +11,11 @@ namespace {
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
 
 /// As REP 117 has it: -inf is too near to measure, +inf or beyond the range is nothing, NaN is a reading that
-/// failed.
+/// failed. Without a max_range everything would be beyond it: such a message says nothing, either.
 double distanceOf(const sensor_msgs::Range& range) {
   const double distance_m = range.range;
-  if (std::isnan(distance_m)) {
-    return distance_m;
+  if (std::isnan(distance_m) || !(range.max_range > 0.0F)) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
   return distance_m > range.max_range ? kNothing_m : std::max(distance_m, 0.0);
 }
@@ -86,10 +86,11 @@ void SafetyInputs::onRange(const sensor_msgs::Range& range) {
 }
 
 void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
+  const ScanView view{scan.ranges.data(), scan.ranges.size(), scan.angle_min,
+                      scan.angle_increment, scan.range_min,     scan.range_max};
   gate_.obstacle(
       ObstacleSensor::kScan,
-      nearestInCorridor(scan.ranges.data(), scan.ranges.size(), scan.angle_min, scan.angle_increment,
-                        scan.range_min, scan.range_max, settings_.obstacles.half_width_m));
+      nearestInCorridor(view, {settings_.obstacles.half_width_m, settings_.obstacles.slow_distance_m}));
 }
 
 }  // namespace perennial

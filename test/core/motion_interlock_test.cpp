@@ -143,24 +143,47 @@ TEST(InterlockSettings, refusesWhatMakesNoSense) {
 }
 
 double nearest(const std::vector<float>& ranges) {
-  return nearestInCorridor(ranges.data(), ranges.size(), -M_PI / 2.0, M_PI / 4.0, 0.1, 10.0, 0.4);
+  return nearestInCorridor({ranges.data(), ranges.size(), -M_PI / 2.0, M_PI / 4.0, 0.1, 10.0}, {0.4, 1.5});
 }
 
 TEST(NearestInCorridor, looksStraightAheadOnly) {
   EXPECT_EQ(nearest({1.0F, 1.0F, 5.0F, 1.0F, 1.0F}), 5.0) << "beside the corridor";
   EXPECT_NEAR(nearest({1.0F, 0.5F, 5.0F, 1.0F, 1.0F}), 0.5 * std::cos(M_PI / 4.0), 1e-6)
       << "0.35 m to the right";
-  EXPECT_EQ(nearest({}), kInfinity);
-  const std::vector<float> behind{0.3F};
-  EXPECT_EQ(nearestInCorridor(behind.data(), 1, M_PI, 0.1, 0.1, 10.0, 0.4), kInfinity);
 }
 
 TEST(NearestInCorridor, readsTheSpecialValues) {
   const float infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(nearest({1.0F, 1.0F, infinity, 1.0F, 1.0F}), kInfinity);
-  EXPECT_EQ(nearest({1.0F, 1.0F, std::nanf(""), 1.0F, 1.0F}), kInfinity);
-  EXPECT_EQ(nearest({1.0F, 1.0F, 0.01F, 1.0F, 1.0F}), kInfinity) << "its own housing";
+  EXPECT_EQ(nearest({1.0F, 1.0F, 11.0F, 1.0F, 1.0F}), kInfinity) << "beyond its reach";
+  EXPECT_NEAR(nearest({1.0F, 1.0F, 0.01F, 1.0F, 1.0F}), 0.01, 1e-6) << "nearer than it measures well";
   EXPECT_EQ(nearest({1.0F, 1.0F, -infinity, 1.0F, 1.0F}), 0.1) << "too near to measure";
+}
+
+TEST(NearestInCorridor, knowsWhenItSeesNothing) {
+  const float nan = std::nanf("");
+  EXPECT_TRUE(std::isnan(nearest({})));
+  EXPECT_TRUE(std::isnan(nearest({nan, nan, nan, nan, nan}))) << "covered";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, nan, 1.0F, 1.0F}))) << "sees the walls, not the way";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, 0.0F, 1.0F, 1.0F}))) << "as many drivers say that they failed";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, -1.0F, 1.0F, 1.0F})));
+}
+
+TEST(NearestInCorridor, knowsThatItDoesNotLookAhead) {
+  const std::vector<float> readings{0.3F, 0.3F};
+  const auto towards = [&](double angle, double range_max) {
+    return nearestInCorridor({readings.data(), 2, angle, 0.01, 0.1, range_max}, {0.4, 1.5});
+  };
+  EXPECT_NEAR(towards(0.0, 10.0), 0.3, 1e-3);
+  EXPECT_TRUE(std::isnan(towards(M_PI, 10.0))) << "behind";
+  EXPECT_TRUE(std::isnan(towards(M_PI / 4.0, 10.0))) << "out of the corridor before its depth";
+  EXPECT_TRUE(std::isnan(towards(0.0, 0.0))) << "a scan that does not say how far it reaches";
+  EXPECT_TRUE(std::isnan(towards(0.0, kNan)));
+}
+
+TEST(NearestInCorridor, someReadingsMayFail) {
+  const std::vector<float> readings{std::nanf(""), 2.0F, std::nanf("")};
+  EXPECT_NEAR(nearestInCorridor({readings.data(), 3, -0.1, 0.1, 0.1, 10.0}, {0.4, 1.5}), 2.0, 1e-6);
 }
 
 class Camera : public ::testing::Test {

@@ -221,10 +221,18 @@ class Stops(unittest.TestCase):
             self.robot.silent = set()
             self.assert_goes_on(2)
 
-    def test_sensor_that_does_not_know_stops(self):
+    def test_sensors_that_do_not_know_stop(self):
         self.robot.range_m = math.nan
         self.steps(2)
-        self.assert_stands("does not know")
+        self.assert_stands("range finder does not know")
+        self.robot.range_m = 5.0
+        self.assert_goes_on(2)
+        for reading in (math.nan, 0.0):
+            self.robot.scan_m = reading
+            self.steps(2)
+            self.assert_stands("laser scanner does not know")
+            self.robot.scan_m = 5.0
+            self.assert_goes_on(2)
 
     # --- the camera and its path ---
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -120,11 +121,29 @@ class MotionInterlock {
   bool master_alive_ = true;
 };
 
-/// Distance ahead of the nearest point of a scan within the corridor |y| <= half_width_m, x > 0; infinity
-/// when there is none. Ray i points `angle_min + i * angle_increment` to the left of straight on. As REP 117
-/// has it, -inf is something too near to measure, taken for range_min; +inf, NaN and readings outside of
-/// [range_min, range_max] see nothing.
-double nearestInCorridor(const float* ranges, std::size_t count, double angle_min, double angle_increment,
-                         double range_min, double range_max, double half_width_m);
+/// A laser scan; ray i points `angle_min + i * angle_increment` rad to the left of straight on.
+struct ScanView {
+  const float* ranges = nullptr;  ///< `count` of them, m
+  std::size_t count = 0;
+  double angle_min = 0.0;
+  double angle_increment = 0.0;
+  double range_min = 0.0;
+  double range_max = 0.0;
+};
+
+/// What the robot drives through: |y| <= half_width_m, x > 0.
+struct Corridor {
+  double half_width_m = 0.4;
+  double depth_m = 1.5;  ///< how far it must be seen
+};
+
+/// Distance ahead of the nearest point of a scan within the corridor; infinity when there is none; NaN when
+/// the scan does not know: when no ray that is still in the corridor at its depth holds a valid reading.
+///
+/// As REP 117 has it, +inf and readings beyond range_max are nothing within reach, -inf is something too near
+/// to measure, taken for range_min, and NaN a reading that failed. A positive reading below range_min is taken
+/// for what it says, something very near; zero or less for a failed one, for so many drivers say it. Without
+/// a range_max above range_min and zero no reading is valid.
+double nearestInCorridor(const ScanView& scan, const Corridor& corridor);
 
 }  // namespace perennial
