@@ -15,6 +15,14 @@ bool fresh(const std::optional<double>& stamp_s, double now_s, double timeout_s)
   return stamp_s && now_s >= *stamp_s && now_s - *stamp_s <= timeout_s;
 }
 
+/// From when on a message's time-out runs; none when its stamp cannot be believed.
+std::optional<double> saidAt(double stamp_s, double now_s, double timeout_s) {
+  if (stamp_s == 0.0) {
+    return now_s;
+  }
+  return stamp_s - now_s <= timeout_s ? std::optional<double>(std::min(stamp_s, now_s)) : std::nullopt;
+}
+
 /// What a single reading says: a distance, infinity for nothing within reach, NaN for nothing known.
 double rangeOf(float reading, const ScanView& scan) {
   const auto range_m = static_cast<double>(reading);
@@ -81,13 +89,14 @@ bool MotionInterlock::resume() {
   return !emergency_latched_;
 }
 
-void MotionInterlock::deadMan(bool held, double now_s) {
+void MotionInterlock::deadMan(bool held, double stamp_s, double now_s) {
   dead_man_held_ = held;
-  dead_man_stamp_s_ = now_s;
+  dead_man_stamp_s_ = saidAt(stamp_s, now_s, settings_.dead_man.timeout_s);
 }
 
-void MotionInterlock::obstacle(ObstacleSensor sensor, double distance_m, double now_s) {
-  readings_[static_cast<std::size_t>(sensor)] = {distance_m, now_s};
+void MotionInterlock::obstacle(ObstacleSensor sensor, double distance_m, double stamp_s, double now_s) {
+  readings_[static_cast<std::size_t>(sensor)] = {distance_m,
+                                                 saidAt(stamp_s, now_s, settings_.obstacles.timeout_s)};
 }
 
 void MotionInterlock::teleop(const Velocity& velocity, double now_s) {
@@ -117,7 +126,7 @@ std::string MotionInterlock::deadManProblem(double now_s) const {
     return "";
   }
   if (!fresh(dead_man_stamp_s_, now_s, settings_.dead_man.timeout_s)) {
-    return "no sign of life from the person who watches";
+    return "no sign of life from the person who watches, or too late a one";
   }
   return dead_man_held_ ? "" : "the dead man's button is not held";
 }
@@ -133,7 +142,7 @@ std::string MotionInterlock::sensorProblem(double now_s) const {
       continue;
     }
     if (!fresh(readings_[i].stamp_s, now_s, settings_.obstacles.timeout_s)) {
-      return std::string("the ") + kSensorNames[i] + " is silent";
+      return std::string("the ") + kSensorNames[i] + " is silent, or its messages are late";
     }
     if (std::isnan(readings_[i].distance_m)) {
       return std::string("the ") + kSensorNames[i] + " does not know what is ahead";

@@ -43,7 +43,7 @@ void SafetyInputs::subscribeDeadMan(ros::NodeHandle nh) {
     subscribers_.push_back(nh.subscribe("joy", 10, &SafetyInputs::onJoy, this));
   } else if (settings_.dead_man.kind == DeadManSettings::Kind::kHeartbeat) {
     subscribers_.push_back(nh.subscribe<std_msgs::Empty>(
-        "heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true); }));
+        "heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true, {}); }));
   }
 }
 
@@ -57,7 +57,7 @@ void SafetyInputs::subscribeObstacles(ros::NodeHandle nh) {
   if (settings_.obstacles.flag) {
     subscribers_.push_back(
         nh.subscribe<std_msgs::Bool>("obstacle", 10, [this](const std_msgs::BoolConstPtr& message) {
-          gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m);
+          gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m, {});
         }));
   }
 }
@@ -78,11 +78,11 @@ bool SafetyInputs::onResume(std_srvs::TriggerRequest&, std_srvs::TriggerResponse
 
 void SafetyInputs::onJoy(const sensor_msgs::Joy& joy) {
   const auto button = static_cast<std::size_t>(settings_.dead_man.button);
-  gate_.deadMan(button < joy.buttons.size() && joy.buttons[button] != 0);
+  gate_.deadMan(button < joy.buttons.size() && joy.buttons[button] != 0, joy.header.stamp);
 }
 
 void SafetyInputs::onRange(const sensor_msgs::Range& range) {
-  gate_.obstacle(ObstacleSensor::kRange, distanceOf(range));
+  gate_.obstacle(ObstacleSensor::kRange, distanceOf(range), range.header.stamp);
 }
 
 void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
@@ -90,7 +90,8 @@ void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
                       scan.angle_increment, scan.range_min,     scan.range_max};
   gate_.obstacle(
       ObstacleSensor::kScan,
-      nearestInCorridor(view, {settings_.obstacles.half_width_m, settings_.obstacles.slow_distance_m}));
+      nearestInCorridor(view, {settings_.obstacles.half_width_m, settings_.obstacles.slow_distance_m}),
+      scan.header.stamp);
 }
 
 }  // namespace perennial

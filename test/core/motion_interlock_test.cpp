@@ -55,11 +55,11 @@ TEST(MotionInterlock, needsTheDeadMan) {
   settings.dead_man.kind = DeadManSettings::Kind::kJoy;
   MotionInterlock interlock(settings);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "never heard of";
-  interlock.deadMan(true, 1.0);
+  interlock.deadMan(true, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.4).kind, Kind::kGo);
   EXPECT_EQ(interlock.at(1.6).kind, Kind::kStop) << "silent";
   EXPECT_EQ(interlock.at(0.5).kind, Kind::kStop) << "the clock went back";
-  interlock.deadMan(false, 2.0);
+  interlock.deadMan(false, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "let go";
 }
 
@@ -67,25 +67,55 @@ TEST(MotionInterlock, obstaclesSlowThenHold) {
   InterlockSettings settings;
   settings.obstacles.range = settings.obstacles.scan = true;
   MotionInterlock interlock(settings);
-  interlock.obstacle(ObstacleSensor::kRange, kInfinity, 1.0);
+  interlock.obstacle(ObstacleSensor::kRange, kInfinity, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "the scanner is silent";
-  interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
   EXPECT_NEAR(interlock.at(1.0).speed_factor, 0.5, 1e-12);
-  interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0);
+  interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kHold) << "the nearer one counts";
-  interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1);
-  interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1);
+  interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1, 1.1);
+  interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1, 1.1);
   EXPECT_EQ(interlock.at(1.1).speed_factor, 1.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "silent again";
-  interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0);
-  interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0);
+  interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0, 2.0);
+  interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "a sensor that does not know";
+}
+
+TEST(MotionInterlock, lateMessagesAreNoNews) {
+  InterlockSettings settings;
+  settings.dead_man.kind = DeadManSettings::Kind::kJoy;
+  settings.obstacles.range = true;
+  MotionInterlock interlock(settings);
+  const auto hear = [&](double joy_stamp_s, double range_stamp_s) {
+    interlock.deadMan(true, joy_stamp_s, 10.0);
+    interlock.obstacle(ObstacleSensor::kRange, 5.0, range_stamp_s, 10.0);
+    return interlock.at(10.0);
+  };
+  EXPECT_EQ(hear(9.8, 9.8).kind, Kind::kGo);
+  EXPECT_EQ(interlock.at(10.4).kind, Kind::kStop) << "the time-out runs from when it was said";
+  EXPECT_NE(hear(9.0, 9.8).reason.find("no sign of life"), std::string::npos) << "held a second ago";
+  EXPECT_NE(hear(9.8, 9.0).reason.find("range finder is silent"), std::string::npos) << "free a second ago";
+  EXPECT_EQ(hear(0.0, 0.0).kind, Kind::kGo) << "without a stamp the arrival counts";
+  EXPECT_EQ(interlock.at(10.4).kind, Kind::kGo);
+}
+
+TEST(MotionInterlock, doesNotBelieveStampsOfTheFuture) {
+  InterlockSettings settings;
+  settings.dead_man.kind = DeadManSettings::Kind::kJoy;
+  MotionInterlock interlock(settings);
+  interlock.deadMan(true, 10.3, 10.0);
+  EXPECT_EQ(interlock.at(10.0).kind, Kind::kGo) << "clocks differ a little";
+  EXPECT_EQ(interlock.at(10.6).kind, Kind::kStop) << "which prolongs nothing";
+  interlock.deadMan(true, 3600.0, 11.0);
+  EXPECT_EQ(interlock.at(11.0).kind, Kind::kStop);
+  EXPECT_EQ(interlock.at(3600.0).kind, Kind::kStop) << "nor later";
 }
 
 TEST(MotionInterlock, ignoresObstacleSensorsThatAreNotSwitchedOn) {
   MotionInterlock interlock;
-  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
 }
 
@@ -106,7 +136,7 @@ TEST(MotionInterlock, aPersonMayDriveTheRobotAwayFromWhatStopsIt) {
   InterlockSettings settings;
   settings.obstacles.flag = true;
   MotionInterlock interlock(settings);
-  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0, 1.0);
   interlock.setMasterAlive(false);
   interlock.teleop({-0.1, 0.0, 0.0}, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kManual);

@@ -81,11 +81,14 @@ class MotionInterlock {
   /// Whether the robot may go on; not while an emergency stop is engaged.
   bool resume();
 
-  /// A sign of life: `held`: whether the button is down (a heartbeat: always).
-  void deadMan(bool held, double now_s);
+  /// A sign of life: `held`: whether the button is down (a heartbeat: always). `stamp_s`: when that was so, by
+  /// the clock of the one who says it; 0: unknown, taken for now. From there on its time-out runs, so late
+  /// messages do not count as news; a stamp further in the future than the time-out is not believed, and
+  /// counts as no sign.
+  void deadMan(bool held, double stamp_s, double now_s);
   /// Distance of the nearest thing in the way; infinity when there is none, NaN when the sensor does not
-  /// know.
-  void obstacle(ObstacleSensor sensor, double distance_m, double now_s);
+  /// know. `stamp_s` as above.
+  void obstacle(ObstacleSensor sensor, double distance_m, double stamp_s, double now_s);
   /// A velocity commanded by a person. One that is not finite counts as zero.
   void teleop(const Velocity& velocity, double now_s);
   /// Somebody else has published a command.
