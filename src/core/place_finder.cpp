@@ -142,10 +142,11 @@ PlaceFinder::Candidate PlaceFinder::beginningOfLoop(const std::vector<Candidate>
 }
 
 PlaceGuess PlaceFinder::ambiguous(const Candidate& best, const Candidate& rival) const {
-  const std::string advice = settings_.loop || !acrossTheEnds(best, rival)
-                                 ? ""
-                                 : "; these are the ends of the path: if it is closed, localisation/loop: true "
-                                   "takes the beginning";
+  const std::string advice =
+      settings_.loop || !acrossTheEnds(best, rival)
+          ? ""
+          : "; these are the ends of the path: if it is closed, localisation/loop: true "
+            "takes the beginning";
   return refused("ambiguous: the view looks like " + humanMetres(best.distance_m) + " of the path (" +
                  agreeing(best.inliers) + "), but like " + humanMetres(rival.distance_m) + " (" +
                  std::to_string(rival.inliers) + "), too" + advice);

@@ -86,7 +86,7 @@ void SafetyInputs::onRange(const sensor_msgs::Range& range) {
 }
 
 void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
-  const ScanView view{scan.ranges.data(), scan.ranges.size(), scan.angle_min,
+  const ScanView view{scan.ranges.data(),   scan.ranges.size(), scan.angle_min,
                       scan.angle_increment, scan.range_min,     scan.range_max};
   gate_.obstacle(
       ObstacleSensor::kScan,

@@ -81,8 +81,8 @@ class MotionInterlock {
   /// Whether the robot may go on; not while an emergency stop is engaged.
   bool resume();
 
-  /// A sign of life: `held`: whether the button is down (a heartbeat: always). `stamp_s`: when that was so, by
-  /// the clock of the one who says it; 0: unknown, taken for now. From there on its time-out runs, so late
+  /// A sign of life: `held`: whether the button is down (a heartbeat: always). `stamp_s`: when that was so,
+  /// by the clock of the one who says it; 0: unknown, taken for now. From there on its time-out runs, so late
   /// messages do not count as news; a stamp further in the future than the time-out is not believed, and
   /// counts as no sign.
   void deadMan(bool held, double stamp_s, double now_s);
@@ -144,9 +144,9 @@ struct Corridor {
 /// the scan does not know: when no ray that is still in the corridor at its depth holds a valid reading.
 ///
 /// As REP 117 has it, +inf and readings beyond range_max are nothing within reach, -inf is something too near
-/// to measure, taken for range_min, and NaN a reading that failed. A positive reading below range_min is taken
-/// for what it says, something very near; zero or less for a failed one, for so many drivers say it. Without
-/// a range_max above range_min and zero no reading is valid.
+/// to measure, taken for range_min, and NaN a reading that failed. A positive reading below range_min is
+/// taken for what it says, something very near; zero or less for a failed one, for so many drivers say it.
+/// Without a range_max above range_min and zero no reading is valid.
 double nearestInCorridor(const ScanView& scan, const Corridor& corridor);
 
 }  // namespace perennial

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <mutex>
-#include <string>
-
 #include <geometry_msgs/Twist.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+
+#include <mutex>
+#include <string>
 
 #include "perennial/core/drivers/velocity_limiter.h"
 #include "perennial/core/motion_interlock.h"
@@ -44,8 +44,8 @@ class CommandGate {
   /// What the interlock says now.
   MotionPermit permit() const;
 
-  // What SafetyInputs hears; acts at once. A stamp is the message's own: late ones do not count as news. Zero: it
-  // has none, and counts from its arrival.
+  // What SafetyInputs hears; acts at once. A stamp is the message's own: late ones do not count as news.
+  // Zero: it has none, and counts from its arrival.
   void setEmergencyStop(EmergencyStop source, bool engaged);
   bool resume();
   void deadMan(bool held, const ros::Time& stamp);
