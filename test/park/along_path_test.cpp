@@ -1,11 +1,11 @@
 // What the along-path correction is worth when the odometry is wrong. PERENNIAL_ALONG_PATH_TABLE=1 measures
 // the whole table of docs/navigation.md; without it one row is tested.
-#include <gtest/gtest.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "park/closed_loop.h"
 #include "perennial/core/feature_extractor.h"
