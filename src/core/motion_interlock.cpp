@@ -15,6 +15,29 @@ bool fresh(const std::optional<double>& stamp_s, double now_s, double timeout_s)
   return stamp_s && now_s >= *stamp_s && now_s - *stamp_s <= timeout_s;
 }
 
+/// From when on a message's time-out runs; none when its stamp cannot be believed.
+std::optional<double> saidAt(double stamp_s, double now_s, double timeout_s) {
+  if (stamp_s == 0.0) {
+    return now_s;
+  }
+  return stamp_s - now_s <= timeout_s ? std::optional<double>(std::min(stamp_s, now_s)) : std::nullopt;
+}
+
+/// What a single reading says: a distance, infinity for nothing within reach, NaN for nothing known.
+double rangeOf(float reading, const ScanView& scan) {
+  const auto range_m = static_cast<double>(reading);
+  if (!(scan.range_max > std::max(scan.range_min, 0.0)) || std::isnan(range_m)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (range_m > scan.range_max) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (std::isinf(range_m)) {
+    return std::max(scan.range_min, 0.0);
+  }
+  return range_m > 0.0 ? range_m : std::numeric_limits<double>::quiet_NaN();
+}
+
 double finiteOrZero(double value) { return std::isfinite(value) ? value : 0.0; }
 
 MotionPermit stop(std::string reason) { return {MotionPermit::Kind::kStop, 0.0, std::move(reason), {}}; }
@@ -66,13 +89,14 @@ bool MotionInterlock::resume() {
   return !emergency_latched_;
 }
 
-void MotionInterlock::deadMan(bool held, double now_s) {
+void MotionInterlock::deadMan(bool held, double stamp_s, double now_s) {
   dead_man_held_ = held;
-  dead_man_stamp_s_ = now_s;
+  dead_man_stamp_s_ = saidAt(stamp_s, now_s, settings_.dead_man.timeout_s);
 }
 
-void MotionInterlock::obstacle(ObstacleSensor sensor, double distance_m, double now_s) {
-  readings_[static_cast<std::size_t>(sensor)] = {distance_m, now_s};
+void MotionInterlock::obstacle(ObstacleSensor sensor, double distance_m, double stamp_s, double now_s) {
+  readings_[static_cast<std::size_t>(sensor)] = {distance_m,
+                                                 saidAt(stamp_s, now_s, settings_.obstacles.timeout_s)};
 }
 
 void MotionInterlock::teleop(const Velocity& velocity, double now_s) {
@@ -102,7 +126,7 @@ std::string MotionInterlock::deadManProblem(double now_s) const {
     return "";
   }
   if (!fresh(dead_man_stamp_s_, now_s, settings_.dead_man.timeout_s)) {
-    return "no sign of life from the person who watches";
+    return "no sign of life from the person who watches, or too late a one";
   }
   return dead_man_held_ ? "" : "the dead man's button is not held";
 }
@@ -118,7 +142,7 @@ std::string MotionInterlock::sensorProblem(double now_s) const {
       continue;
     }
     if (!fresh(readings_[i].stamp_s, now_s, settings_.obstacles.timeout_s)) {
-      return std::string("the ") + kSensorNames[i] + " is silent";
+      return std::string("the ") + kSensorNames[i] + " is silent, or its messages are late";
     }
     if (std::isnan(readings_[i].distance_m)) {
       return std::string("the ") + kSensorNames[i] + " does not know what is ahead";
@@ -169,22 +193,22 @@ MotionPermit MotionInterlock::at(double now_s) const {
   return byObstacles();
 }
 
-double nearestInCorridor(const float* ranges, std::size_t count, double angle_min, double angle_increment,
-                         double range_min, double range_max, double half_width_m) {
+double nearestInCorridor(const ScanView& scan, const Corridor& corridor) {
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool too_near = std::isinf(ranges[i]) && ranges[i] < 0.0F;
-    const double range_m = too_near ? range_min : static_cast<double>(ranges[i]);
-    if (!(range_m >= range_min && range_m <= range_max)) {
+  bool looked = false;
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    const double range_m = rangeOf(scan.ranges[i], scan);
+    const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    if (std::isnan(range_m) || !(std::cos(angle) > 0.0)) {
       continue;
     }
-    const double angle = angle_min + static_cast<double>(i) * angle_increment;
-    const double ahead_m = range_m * std::cos(angle);
-    if (ahead_m > 0.0 && std::abs(range_m * std::sin(angle)) <= half_width_m) {
-      nearest_m = std::min(nearest_m, ahead_m);
+    const double sideways = std::abs(std::sin(angle));
+    looked = looked || sideways * corridor.depth_m <= corridor.half_width_m;
+    if (std::isfinite(range_m) && sideways * range_m <= corridor.half_width_m) {
+      nearest_m = std::min(nearest_m, range_m * std::cos(angle));
     }
   }
-  return nearest_m;
+  return looked ? nearest_m : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace perennial

@@ -52,6 +52,7 @@ LocalisationSettings LocalisationSettings::load(ParameterReader& reader) {
   settings.elsewhere_m = reader.real("elsewhere_m", settings.elsewhere_m, 0.1, 1e3);
   settings.agreeing_images = reader.integer("agreeing_images", settings.agreeing_images, 1, 100);
   settings.agreement_m = reader.real("agreement_m", settings.agreement_m, 0.01, 1e3);
+  settings.loop = reader.boolean("loop", settings.loop);
   return settings;
 }
 
@@ -118,11 +119,15 @@ std::vector<PlaceFinder::Candidate> PlaceFinder::likeliest() {
   return candidates;
 }
 
-/// Whether they are near to each other, straight along the path or across the ends of a loop. Places as near
-/// as that across the ends of a path that is no loop do not look alike, and the question does not arise.
+/// Whether they would be near to each other if the path were closed.
+bool PlaceFinder::acrossTheEnds(const Candidate& a, const Candidate& b) const {
+  return last_m_ - first_m_ - std::abs(a.distance_m - b.distance_m) <= settings_.elsewhere_m;
+}
+
+/// Whether they are near to each other, straight along the path or across the ends of a loop.
 bool PlaceFinder::samePlace(const Candidate& a, const Candidate& b) const {
-  const double apart_m = std::abs(a.distance_m - b.distance_m);
-  return std::min(apart_m, last_m_ - first_m_ - apart_m) <= settings_.elsewhere_m;
+  return std::abs(a.distance_m - b.distance_m) <= settings_.elsewhere_m ||
+         (settings_.loop && acrossTheEnds(a, b));
 }
 
 /// The likeliest candidate; but if that lies at the end of a loop, the one at its beginning when that is
@@ -136,6 +141,17 @@ PlaceFinder::Candidate PlaceFinder::beginningOfLoop(const std::vector<Candidate>
   return beginning == candidates.end() ? best : *beginning;
 }
 
+PlaceGuess PlaceFinder::ambiguous(const Candidate& best, const Candidate& rival) const {
+  const std::string advice =
+      settings_.loop || !acrossTheEnds(best, rival)
+          ? ""
+          : "; these are the ends of the path: if it is closed, localisation/loop: true "
+            "takes the beginning";
+  return refused("ambiguous: the view looks like " + humanMetres(best.distance_m) + " of the path (" +
+                 agreeing(best.inliers) + "), but like " + humanMetres(rival.distance_m) + " (" +
+                 std::to_string(rival.inliers) + "), too" + advice);
+}
+
 PlaceGuess PlaceFinder::guess() {
   const std::vector<Candidate> candidates = likeliest();
   if (candidates.empty() || !candidates.front().recognised ||
@@ -147,9 +163,7 @@ PlaceGuess PlaceFinder::guess() {
                                   [&](const Candidate& other) { return !samePlace(other, best); });
   const int rival_inliers = rival == candidates.end() ? 0 : rival->inliers;
   if (rival_inliers > settings_.rival_share * best.inliers) {
-    return refused("ambiguous: the view looks like " + humanMetres(best.distance_m) + " of the path (" +
-                   agreeing(best.inliers) + "), but like " + humanMetres(rival->distance_m) + " (" +
-                   std::to_string(rival_inliers) + "), too");
+    return ambiguous(best, *rival);
   }
   PlaceGuess guess;
   guess.sure = true;

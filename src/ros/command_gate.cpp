@@ -109,12 +109,12 @@ bool CommandGate::resume() {
   return interlock_.resume();
 }
 
-void CommandGate::deadMan(bool held) {
-  change([&] { interlock_.deadMan(held, ros::Time::now().toSec()); });
+void CommandGate::deadMan(bool held, const ros::Time& stamp) {
+  change([&] { interlock_.deadMan(held, stamp.toSec(), ros::Time::now().toSec()); });
 }
 
-void CommandGate::obstacle(ObstacleSensor sensor, double distance_m) {
-  change([&] { interlock_.obstacle(sensor, distance_m, ros::Time::now().toSec()); });
+void CommandGate::obstacle(ObstacleSensor sensor, double distance_m, const ros::Time& stamp) {
+  change([&] { interlock_.obstacle(sensor, distance_m, stamp.toSec(), ros::Time::now().toSec()); });
 }
 
 void CommandGate::teleop(const Velocity& velocity) {

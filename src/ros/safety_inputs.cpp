@@ -11,11 +11,11 @@ namespace {
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
 
 /// As REP 117 has it: -inf is too near to measure, +inf or beyond the range is nothing, NaN is a reading that
-/// failed.
+/// failed. Without a max_range everything would be beyond it: such a message says nothing, either.
 double distanceOf(const sensor_msgs::Range& range) {
   const double distance_m = range.range;
-  if (std::isnan(distance_m)) {
-    return distance_m;
+  if (std::isnan(distance_m) || !(range.max_range > 0.0F)) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
   return distance_m > range.max_range ? kNothing_m : std::max(distance_m, 0.0);
 }
@@ -43,7 +43,7 @@ void SafetyInputs::subscribeDeadMan(ros::NodeHandle nh) {
     subscribers_.push_back(nh.subscribe("joy", 10, &SafetyInputs::onJoy, this));
   } else if (settings_.dead_man.kind == DeadManSettings::Kind::kHeartbeat) {
     subscribers_.push_back(nh.subscribe<std_msgs::Empty>(
-        "heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true); }));
+        "heartbeat", 10, [this](const std_msgs::EmptyConstPtr&) { gate_.deadMan(true, {}); }));
   }
 }
 
@@ -57,7 +57,7 @@ void SafetyInputs::subscribeObstacles(ros::NodeHandle nh) {
   if (settings_.obstacles.flag) {
     subscribers_.push_back(
         nh.subscribe<std_msgs::Bool>("obstacle", 10, [this](const std_msgs::BoolConstPtr& message) {
-          gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m);
+          gate_.obstacle(ObstacleSensor::kFlag, message->data != 0 ? 0.0 : kNothing_m, {});
         }));
   }
 }
@@ -78,18 +78,20 @@ bool SafetyInputs::onResume(std_srvs::TriggerRequest&, std_srvs::TriggerResponse
 
 void SafetyInputs::onJoy(const sensor_msgs::Joy& joy) {
   const auto button = static_cast<std::size_t>(settings_.dead_man.button);
-  gate_.deadMan(button < joy.buttons.size() && joy.buttons[button] != 0);
+  gate_.deadMan(button < joy.buttons.size() && joy.buttons[button] != 0, joy.header.stamp);
 }
 
 void SafetyInputs::onRange(const sensor_msgs::Range& range) {
-  gate_.obstacle(ObstacleSensor::kRange, distanceOf(range));
+  gate_.obstacle(ObstacleSensor::kRange, distanceOf(range), range.header.stamp);
 }
 
 void SafetyInputs::onScan(const sensor_msgs::LaserScan& scan) {
+  const ScanView view{scan.ranges.data(),   scan.ranges.size(), scan.angle_min,
+                      scan.angle_increment, scan.range_min,     scan.range_max};
   gate_.obstacle(
       ObstacleSensor::kScan,
-      nearestInCorridor(scan.ranges.data(), scan.ranges.size(), scan.angle_min, scan.angle_increment,
-                        scan.range_min, scan.range_max, settings_.obstacles.half_width_m));
+      nearestInCorridor(view, {settings_.obstacles.half_width_m, settings_.obstacles.slow_distance_m}),
+      scan.header.stamp);
 }
 
 }  // namespace perennial

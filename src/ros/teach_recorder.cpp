@@ -91,7 +91,7 @@ void TeachRecorder::begin(const perennial_nav::TeachGoal& goal) {
   odometry_watch_.reset();
   images_.clear();
   path_ = nav_msgs::Path();
-  refused_odometry_ = refused_images_ = 0;
+  refused_images_ = 0;
   last_refusal_.clear();
   if (last_command_) {
     session_->addCommand(0.0, *last_command_);
@@ -131,8 +131,8 @@ perennial_nav::TeachResult TeachRecorder::finish() {
   } catch (const Error& error) {
     result.message = error.what();
     if (!last_refusal_.empty()) {
-      result.message += " (" + std::to_string(refused_odometry_ + refused_images_) +
-                        " messages were refused, the last because: " + last_refusal_ + ")";
+      result.message += " (" + std::to_string(refused_images_) +
+                        " images were refused, the last because: " + last_refusal_ + ")";
     }
     ROS_ERROR("%s", result.message.c_str());
   }
@@ -178,9 +178,8 @@ void TeachRecorder::onOdometry(const nav_msgs::OdometryConstPtr& message) {
   const OdometrySample sample = fromMessage(*message);
   const std::string problem = odometer_.add(sample);
   if (!problem.empty()) {
-    ++refused_odometry_;
-    last_refusal_ = problem;
-    ROS_WARN_THROTTLE(1.0, "odometry refused: %s", problem.c_str());
+    // Left out, it would still shift the rest of the path: the next sample is far from the last good one.
+    abort(problem);
     return;
   }
   session_->addMeasuredVelocity(odometer_.newestDistance(), {sample.forward_m_s, sample.angular_rad_s, 0.0});
@@ -262,18 +261,16 @@ void TeachRecorder::onReconfigure(perennial_nav::ExtractionConfig& config, uint3
 
 void TeachRecorder::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
-  const std::size_t refused = refused_odometry_ + refused_images_;
   if (!session_) {
     status.summary(DiagnosticStatus::OK, "idle");
-  } else if (refused > 0) {
-    status.summary(DiagnosticStatus::WARN, "teaching; messages refused: " + last_refusal_);
+  } else if (refused_images_ > 0) {
+    status.summary(DiagnosticStatus::WARN, "teaching; images refused: " + last_refusal_);
   } else {
     status.summary(DiagnosticStatus::OK, "teaching");
   }
   status.add("distance_m", session_ ? session_->distance(odometer_.newestDistance()) : 0.0);
   status.add("local maps", session_ ? session_->localMaps() : 0);
   status.add("features in the newest", session_ ? session_->newestFeatures() : 0);
-  status.add("odometry refused", refused_odometry_);
   status.add("images refused", refused_images_);
   status.add("images dropped", images_.dropped());
 }

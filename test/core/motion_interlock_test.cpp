@@ -55,11 +55,11 @@ TEST(MotionInterlock, needsTheDeadMan) {
   settings.dead_man.kind = DeadManSettings::Kind::kJoy;
   MotionInterlock interlock(settings);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "never heard of";
-  interlock.deadMan(true, 1.0);
+  interlock.deadMan(true, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.4).kind, Kind::kGo);
   EXPECT_EQ(interlock.at(1.6).kind, Kind::kStop) << "silent";
   EXPECT_EQ(interlock.at(0.5).kind, Kind::kStop) << "the clock went back";
-  interlock.deadMan(false, 2.0);
+  interlock.deadMan(false, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "let go";
 }
 
@@ -67,25 +67,55 @@ TEST(MotionInterlock, obstaclesSlowThenHold) {
   InterlockSettings settings;
   settings.obstacles.range = settings.obstacles.scan = true;
   MotionInterlock interlock(settings);
-  interlock.obstacle(ObstacleSensor::kRange, kInfinity, 1.0);
+  interlock.obstacle(ObstacleSensor::kRange, kInfinity, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "the scanner is silent";
-  interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
   EXPECT_NEAR(interlock.at(1.0).speed_factor, 0.5, 1e-12);
-  interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0);
+  interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kHold) << "the nearer one counts";
-  interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1);
-  interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1);
+  interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1, 1.1);
+  interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1, 1.1);
   EXPECT_EQ(interlock.at(1.1).speed_factor, 1.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "silent again";
-  interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0);
-  interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0);
+  interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0, 2.0);
+  interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "a sensor that does not know";
+}
+
+TEST(MotionInterlock, lateMessagesAreNoNews) {
+  InterlockSettings settings;
+  settings.dead_man.kind = DeadManSettings::Kind::kJoy;
+  settings.obstacles.range = true;
+  MotionInterlock interlock(settings);
+  const auto hear = [&](double joy_stamp_s, double range_stamp_s) {
+    interlock.deadMan(true, joy_stamp_s, 10.0);
+    interlock.obstacle(ObstacleSensor::kRange, 5.0, range_stamp_s, 10.0);
+    return interlock.at(10.0);
+  };
+  EXPECT_EQ(hear(9.8, 9.8).kind, Kind::kGo);
+  EXPECT_EQ(interlock.at(10.4).kind, Kind::kStop) << "the time-out runs from when it was said";
+  EXPECT_NE(hear(9.0, 9.8).reason.find("no sign of life"), std::string::npos) << "held a second ago";
+  EXPECT_NE(hear(9.8, 9.0).reason.find("range finder is silent"), std::string::npos) << "free a second ago";
+  EXPECT_EQ(hear(0.0, 0.0).kind, Kind::kGo) << "without a stamp the arrival counts";
+  EXPECT_EQ(interlock.at(10.4).kind, Kind::kGo);
+}
+
+TEST(MotionInterlock, doesNotBelieveStampsOfTheFuture) {
+  InterlockSettings settings;
+  settings.dead_man.kind = DeadManSettings::Kind::kJoy;
+  MotionInterlock interlock(settings);
+  interlock.deadMan(true, 10.3, 10.0);
+  EXPECT_EQ(interlock.at(10.0).kind, Kind::kGo) << "clocks differ a little";
+  EXPECT_EQ(interlock.at(10.6).kind, Kind::kStop) << "which prolongs nothing";
+  interlock.deadMan(true, 3600.0, 11.0);
+  EXPECT_EQ(interlock.at(11.0).kind, Kind::kStop);
+  EXPECT_EQ(interlock.at(3600.0).kind, Kind::kStop) << "nor later";
 }
 
 TEST(MotionInterlock, ignoresObstacleSensorsThatAreNotSwitchedOn) {
   MotionInterlock interlock;
-  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
 }
 
@@ -106,7 +136,7 @@ TEST(MotionInterlock, aPersonMayDriveTheRobotAwayFromWhatStopsIt) {
   InterlockSettings settings;
   settings.obstacles.flag = true;
   MotionInterlock interlock(settings);
-  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0);
+  interlock.obstacle(ObstacleSensor::kFlag, 0.0, 1.0, 1.0);
   interlock.setMasterAlive(false);
   interlock.teleop({-0.1, 0.0, 0.0}, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kManual);
@@ -143,24 +173,47 @@ TEST(InterlockSettings, refusesWhatMakesNoSense) {
 }
 
 double nearest(const std::vector<float>& ranges) {
-  return nearestInCorridor(ranges.data(), ranges.size(), -M_PI / 2.0, M_PI / 4.0, 0.1, 10.0, 0.4);
+  return nearestInCorridor({ranges.data(), ranges.size(), -M_PI / 2.0, M_PI / 4.0, 0.1, 10.0}, {0.4, 1.5});
 }
 
 TEST(NearestInCorridor, looksStraightAheadOnly) {
   EXPECT_EQ(nearest({1.0F, 1.0F, 5.0F, 1.0F, 1.0F}), 5.0) << "beside the corridor";
   EXPECT_NEAR(nearest({1.0F, 0.5F, 5.0F, 1.0F, 1.0F}), 0.5 * std::cos(M_PI / 4.0), 1e-6)
       << "0.35 m to the right";
-  EXPECT_EQ(nearest({}), kInfinity);
-  const std::vector<float> behind{0.3F};
-  EXPECT_EQ(nearestInCorridor(behind.data(), 1, M_PI, 0.1, 0.1, 10.0, 0.4), kInfinity);
 }
 
 TEST(NearestInCorridor, readsTheSpecialValues) {
   const float infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(nearest({1.0F, 1.0F, infinity, 1.0F, 1.0F}), kInfinity);
-  EXPECT_EQ(nearest({1.0F, 1.0F, std::nanf(""), 1.0F, 1.0F}), kInfinity);
-  EXPECT_EQ(nearest({1.0F, 1.0F, 0.01F, 1.0F, 1.0F}), kInfinity) << "its own housing";
+  EXPECT_EQ(nearest({1.0F, 1.0F, 11.0F, 1.0F, 1.0F}), kInfinity) << "beyond its reach";
+  EXPECT_NEAR(nearest({1.0F, 1.0F, 0.01F, 1.0F, 1.0F}), 0.01, 1e-6) << "nearer than it measures well";
   EXPECT_EQ(nearest({1.0F, 1.0F, -infinity, 1.0F, 1.0F}), 0.1) << "too near to measure";
+}
+
+TEST(NearestInCorridor, knowsWhenItSeesNothing) {
+  const float nan = std::nanf("");
+  EXPECT_TRUE(std::isnan(nearest({})));
+  EXPECT_TRUE(std::isnan(nearest({nan, nan, nan, nan, nan}))) << "covered";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, nan, 1.0F, 1.0F}))) << "sees the walls, not the way";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, 0.0F, 1.0F, 1.0F}))) << "as many drivers say that they failed";
+  EXPECT_TRUE(std::isnan(nearest({1.0F, 1.0F, -1.0F, 1.0F, 1.0F})));
+}
+
+TEST(NearestInCorridor, knowsThatItDoesNotLookAhead) {
+  const std::vector<float> readings{0.3F, 0.3F};
+  const auto towards = [&](double angle, double range_max) {
+    return nearestInCorridor({readings.data(), 2, angle, 0.01, 0.1, range_max}, {0.4, 1.5});
+  };
+  EXPECT_NEAR(towards(0.0, 10.0), 0.3, 1e-3);
+  EXPECT_TRUE(std::isnan(towards(M_PI, 10.0))) << "behind";
+  EXPECT_TRUE(std::isnan(towards(M_PI / 4.0, 10.0))) << "out of the corridor before its depth";
+  EXPECT_TRUE(std::isnan(towards(0.0, 0.0))) << "a scan that does not say how far it reaches";
+  EXPECT_TRUE(std::isnan(towards(0.0, kNan)));
+}
+
+TEST(NearestInCorridor, someReadingsMayFail) {
+  const std::vector<float> readings{std::nanf(""), 2.0F, std::nanf("")};
+  EXPECT_NEAR(nearestInCorridor({readings.data(), 3, -0.1, 0.1, 0.1, 10.0}, {0.4, 1.5}), 2.0, 1e-6);
 }
 
 class Camera : public ::testing::Test {

@@ -45,7 +45,9 @@ class AlongPath : public ClosedLoop {
     const MapManager maps = manager(std::make_shared<strategies::StaticMap>());
     park_->place(0.2, 0.0);
     const park::ParkFrame frame = park_->step();
-    PlaceFinder finder;
+    LocalisationSettings settings;
+    settings.loop = true;
+    PlaceFinder finder(settings);
     finder.seek(FeatureExtractor(settings_.extraction).extract(frame.image));
     for (std::uint32_t i = 0; i < maps.file().size(); ++i) {
       finder.consider(activate(maps.strategy(), maps.file().read(i), 0.0));

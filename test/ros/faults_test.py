@@ -226,6 +226,30 @@ class Faults(unittest.TestCase):
         self.assertIn("did not move", result.message)
         self.assertFalse(os.path.exists(os.path.join(FOLDER, "standing.perennial")))
 
+    def assert_teaching_fails(self, reason, x):
+        """One bad sample ends the teaching, although good ones would follow, and the map there was stays as it is."""
+        file = os.path.join(FOLDER, "path.perennial")
+        with open(file, "rb") as stored:
+            before = stored.read()
+        self.stack.settle()
+        self.stack.start(self.stack.teach, TeachGoal(map_name="path", overwrite=True))
+        self.robot.speed = 0.5
+        for _ in range(10):
+            self.robot.step(BOTH)
+        self.robot.odometry_changes = {"x": x}
+        self.robot.step()
+        result = self.stack.result(self.stack.teach)
+        self.assertFalse(result.success)
+        self.assertIn(reason, result.message)
+        with open(file, "rb") as stored:
+            self.assertEqual(stored.read(), before)
+
+    def test_odometry_that_jumps_while_teaching(self):
+        self.assert_teaching_fails("odometry jumps", 3.5)
+
+    def test_odometry_of_nan_while_teaching(self):
+        self.assert_teaching_fails("not finite", math.nan)
+
     def test_images_of_another_size_while_teaching_are_left_out(self):
         self.stack.settle()
         self.stack.start(self.stack.teach, TeachGoal(map_name="resized"))

@@ -163,6 +163,12 @@ class Localise(unittest.TestCase):
         self.assertAlmostEqual(min(places), 1.5, delta=1.0)
         self.assertAlmostEqual(max(places), 5.5, delta=1.0)
 
+    def test_the_ends_of_a_path_that_look_the_same(self):
+        self.robot.corridor_m = LENGTH_M - 1.0  # the last metre looks like the first
+        self.assertTrue(self.stack.teach_path("ends", overwrite=True).success)
+        self.begin(0.5, "ends")
+        self.assert_refuses(0.5, "ambiguous", "localisation/loop: true")
+
     def test_two_images_that_disagree(self):
         self.begin(2.5)
         self.robot.odometry_changes = {"x": 2.5}

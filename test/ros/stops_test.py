@@ -40,6 +40,7 @@ class GuardedRobot(FakeRobot):
 
     def calm(self):
         self.silent = set()  # names of what says nothing
+        self.late = {}  # seconds by name: how old what it says is
         self.held, self.range_m, self.scan_m, self.flag = True, 5.0, 5.0, False
 
     def restart(self, x=0.0):
@@ -55,6 +56,8 @@ class GuardedRobot(FakeRobot):
             "flag": Bool(self.flag),
         }
         for name, message in messages.items():
+            if name in self.late:
+                message.header.stamp = rospy.Time.from_sec(self.time - self.late[name])
             if name not in self.silent:
                 self.publishers[name].publish(message)
 
@@ -232,10 +235,31 @@ class Stops(unittest.TestCase):
             self.robot.silent = set()
             self.assert_goes_on(2)
 
-    def test_sensor_that_does_not_know_stops(self):
+    def test_late_messages_are_no_news(self):
+        """As after a link that was cut: everything comes, but long after it was said. So do clocks that are wrong."""
+        reasons = (("range", "range finder is silent"), ("scan", "laser scanner is silent"), ("joy", "no sign of life"))
+        for name, reason in reasons:
+            for seconds in (2.0, -3600.0):
+                self.robot.late = {name: 0.1}
+                self.assert_goes_on(2)
+                self.robot.late = {name: seconds}
+                self.steps(2)
+                self.assert_stands(reason)
+            self.robot.late = {}
+            self.assert_goes_on(2)
+
+    def test_sensors_that_do_not_know_stop(self):
         self.robot.range_m = math.nan
         self.steps(2)
-        self.assert_stands("does not know")
+        self.assert_stands("range finder does not know")
+        self.robot.range_m = 5.0
+        self.assert_goes_on(2)
+        for reading in (math.nan, 0.0):
+            self.robot.scan_m = reading
+            self.steps(2)
+            self.assert_stands("laser scanner does not know")
+            self.robot.scan_m = 5.0
+            self.assert_goes_on(2)
 
     # --- the camera and its path ---
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -80,11 +81,14 @@ class MotionInterlock {
   /// Whether the robot may go on; not while an emergency stop is engaged.
   bool resume();
 
-  /// A sign of life: `held`: whether the button is down (a heartbeat: always).
-  void deadMan(bool held, double now_s);
+  /// A sign of life: `held`: whether the button is down (a heartbeat: always). `stamp_s`: when that was so,
+  /// by the clock of the one who says it; 0: unknown, taken for now. From there on its time-out runs, so late
+  /// messages do not count as news; a stamp further in the future than the time-out is not believed, and
+  /// counts as no sign.
+  void deadMan(bool held, double stamp_s, double now_s);
   /// Distance of the nearest thing in the way; infinity when there is none, NaN when the sensor does not
-  /// know.
-  void obstacle(ObstacleSensor sensor, double distance_m, double now_s);
+  /// know. `stamp_s` as above.
+  void obstacle(ObstacleSensor sensor, double distance_m, double stamp_s, double now_s);
   /// A velocity commanded by a person. One that is not finite counts as zero.
   void teleop(const Velocity& velocity, double now_s);
   /// Somebody else has published a command.
@@ -120,11 +124,29 @@ class MotionInterlock {
   bool master_alive_ = true;
 };
 
-/// Distance ahead of the nearest point of a scan within the corridor |y| <= half_width_m, x > 0; infinity
-/// when there is none. Ray i points `angle_min + i * angle_increment` to the left of straight on. As REP 117
-/// has it, -inf is something too near to measure, taken for range_min; +inf, NaN and readings outside of
-/// [range_min, range_max] see nothing.
-double nearestInCorridor(const float* ranges, std::size_t count, double angle_min, double angle_increment,
-                         double range_min, double range_max, double half_width_m);
+/// A laser scan; ray i points `angle_min + i * angle_increment` rad to the left of straight on.
+struct ScanView {
+  const float* ranges = nullptr;  ///< `count` of them, m
+  std::size_t count = 0;
+  double angle_min = 0.0;
+  double angle_increment = 0.0;
+  double range_min = 0.0;
+  double range_max = 0.0;
+};
+
+/// What the robot drives through: |y| <= half_width_m, x > 0.
+struct Corridor {
+  double half_width_m = 0.4;
+  double depth_m = 1.5;  ///< how far it must be seen
+};
+
+/// Distance ahead of the nearest point of a scan within the corridor; infinity when there is none; NaN when
+/// the scan does not know: when no ray that is still in the corridor at its depth holds a valid reading.
+///
+/// As REP 117 has it, +inf and readings beyond range_max are nothing within reach, -inf is something too near
+/// to measure, taken for range_min, and NaN a reading that failed. A positive reading below range_min is
+/// taken for what it says, something very near; zero or less for a failed one, for so many drivers say it.
+/// Without a range_max above range_min and zero no reading is valid.
+double nearestInCorridor(const ScanView& scan, const Corridor& corridor);
 
 }  // namespace perennial

@@ -19,6 +19,7 @@ struct LocalisationSettings {
   double elsewhere_m = 3.0;     ///< nearer to each other along the path, local maps see the same place
   int agreeing_images = 2;      ///< so many images in a row must give the same place
   double agreement_m = 1.0;     ///< within this distance
+  bool loop = false;            ///< the path is closed: its ends are one place, the beginning
 
   /// Keys as the members are called. Throws ParameterError.
   static LocalisationSettings load(ParameterReader& reader);
@@ -37,8 +38,9 @@ struct PlaceGuess {
 /// Finds a view among all local maps of a path, which pass by once: the strongest features of the view are
 /// registered against every local map, and the whole view against those of the likeliest stretches, which
 /// alone are kept, so that memory does not grow with the path. Not sure when no place is recognised, or when
-/// another place speaks for itself nearly as well. The two ends of a path that look alike are the ends of a
-/// loop, and one place: its beginning. Not thread-safe.
+/// another place speaks for itself nearly as well. A path does not know whether it is closed: only when the
+/// settings say so its two ends are one place, the beginning, and else two that may be confused. Not
+/// thread-safe.
 class PlaceFinder {
  public:
   explicit PlaceFinder(const LocalisationSettings& settings = {},
@@ -76,7 +78,9 @@ class PlaceFinder {
   Candidate judge(const ActiveMap& map);
   void closeStretch();
   std::vector<Candidate> likeliest();
+  bool acrossTheEnds(const Candidate& a, const Candidate& b) const;
   bool samePlace(const Candidate& a, const Candidate& b) const;
+  PlaceGuess ambiguous(const Candidate& best, const Candidate& rival) const;
   Candidate beginningOfLoop(const std::vector<Candidate>& candidates) const;
 
   LocalisationSettings settings_;

@@ -44,11 +44,12 @@ class CommandGate {
   /// What the interlock says now.
   MotionPermit permit() const;
 
-  // What SafetyInputs hears; acts at once.
+  // What SafetyInputs hears; acts at once. A stamp is the message's own: late ones do not count as news.
+  // Zero: it has none, and counts from its arrival.
   void setEmergencyStop(EmergencyStop source, bool engaged);
   bool resume();
-  void deadMan(bool held);
-  void obstacle(ObstacleSensor sensor, double distance_m);
+  void deadMan(bool held, const ros::Time& stamp);
+  void obstacle(ObstacleSensor sensor, double distance_m, const ros::Time& stamp);
   void teleop(const Velocity& velocity);
 
   /// Served by the gate's own thread: safety must not wait for an image that is being registered.

@@ -79,7 +79,6 @@ class TeachRecorder {
   std::optional<Velocity> last_command_;
   geometry_msgs::PoseStamped newest_pose_;
   nav_msgs::Path path_;
-  std::size_t refused_odometry_ = 0;
   std::size_t refused_images_ = 0;
   std::string last_refusal_;
 
