@@ -67,6 +67,19 @@ class ToolsTest : public ::testing::Test {
   test_tools::TemporaryFolder folder_;
 };
 
+TEST_F(ToolsTest, aDataSetThatWasMadeAnewIsAnotherInput) {
+  const std::string command = "--strategy static --out " + folder_ / "run";
+  ASSERT_EQ(evaluate(command).status, 0);
+  const std::string before = contentOf(folder_ / "run/errors.csv");
+  std::string manifest = contentOf(folder_ / "data/manifest.csv");
+  const std::size_t offset = manifest.find("1.png,-12");
+  ASSERT_NE(offset, std::string::npos);
+  std::ofstream(folder_ / "data/manifest.csv") << manifest.replace(offset, 9, "1.png,-13");
+  const Result again = evaluate(command);
+  ASSERT_EQ(again.status, 0) << again.output;
+  EXPECT_NE(contentOf(folder_ / "run/errors.csv"), before);
+}
+
 TEST_F(ToolsTest, aSweepIsRunOnceAndReportedOn) {
   const std::string sweep = "--sweep " + folder_ / "sweep.yaml" + " --out " + folder_ / "runs";
   const Result first = evaluate(sweep);

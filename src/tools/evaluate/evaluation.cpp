@@ -4,11 +4,24 @@
 #include <map>
 #include <utility>
 
+#include "core/map/row_checksum.h"
 #include "perennial/evaluation/parallel.h"
 #include "perennial/ros/bag_dataset.h"
 #include "tools/evaluate/progress.h"
 
 namespace perennial {
+namespace {
+
+/// Of everything that the data set says of its images: a data set that was made anew is another input.
+std::string fingerprint(const Dataset& dataset) {
+  RowChecksum checksum;
+  for (const DatasetRow& row : dataset.rows) {
+    checksum.add(row.traversal).add(row.stamp_s).add(row.distance_m).add(row.image).add(row.offset_px);
+  }
+  return std::to_string(checksum.value());
+}
+
+}  // namespace
 
 bool Evaluation::run() {
   const std::vector<RunSettings> runs = checkedRuns();
@@ -72,7 +85,7 @@ std::string Evaluation::folderOf(const RunSettings& run) const {
 
 std::string Evaluation::inputName(const Dataset& dataset) const {
   return dataset.manifest + " (" + std::to_string(dataset.rows.size()) +
-         " images) teach=" + options_.selection.teach + " from=" + options_.selection.from +
+         " images, checksum " + fingerprint(dataset) + ") teach=" + options_.selection.teach + " from=" + options_.selection.from +
          " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first) +
          (options_.repeat > 0 ? " repeat=" + std::to_string(options_.repeat) : "") +
          (options_.stored_features ? " stored features" : "");
