@@ -84,8 +84,8 @@ std::string Evaluation::folderOf(const RunSettings& run) const {
 }
 
 std::string Evaluation::inputName(const Dataset& dataset) const {
-  return dataset.manifest + " (" + std::to_string(dataset.rows.size()) +
-         " images, checksum " + fingerprint(dataset) + ") teach=" + options_.selection.teach + " from=" + options_.selection.from +
+  return dataset.manifest + " (" + std::to_string(dataset.rows.size()) + " images, checksum " +
+         fingerprint(dataset) + ") teach=" + options_.selection.teach + " from=" + options_.selection.from +
          " to=" + options_.selection.to + " skip_first=" + std::to_string(options_.skip_first) +
          (options_.repeat > 0 ? " repeat=" + std::to_string(options_.repeat) : "") +
          (options_.stored_features ? " stored features" : "");
