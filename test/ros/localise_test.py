@@ -12,6 +12,7 @@ import sys
 import unittest
 from unittest import mock
 
+import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
@@ -106,7 +107,8 @@ class Localise(unittest.TestCase):
 
     def test_asked_for_from_the_command_line(self):
         self.stack.settle(5.5)
-        goal = subprocess.Popen(["rosrun", "perennial_nav", "goal", "repeat", "path", "--localise"],
+        program = roslib.packages.find_node("perennial_nav", "goal")[0]  # rosrun finds the script's source, too
+        goal = subprocess.Popen([program, "repeat", "path", "--localise"],
                                 stdout=subprocess.PIPE, universal_newlines=True)  # fmt: skip
         wait_until(lambda: goal.poll() is not None or self.robot.step(BOTH) is None, "the end of the path")
         output = goal.communicate()[0]
