@@ -17,6 +17,7 @@ ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stam
       alternative.features.add(map.features.keypoints.at(i), map.features.descriptors.at(i));
       alternative.positions.push_back(static_cast<std::uint32_t>(i));
     }
+    alternative.features.edges = map.features.edges;
     active.alternatives.push_back(std::move(alternative));
   }
   return active;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/features/edge_field_extractor.h"
 #include "core/map/local_map_codec.h"
 #include "perennial/core/error.h"
 #include "perennial/core/learning.h"
@@ -14,6 +15,11 @@ namespace {
 /// Observations of a local map are complete when the robot registers against one this many places further on:
 /// distance estimates may waver between neighbours.
 constexpr std::uint32_t kPlacesUntilLearned = 2;
+
+/// Whether views of this map's features come with edges.
+bool usesEdges(const MapMetadata& metadata) {
+  return metadata.extraction.find(" descriptor=orientation") != std::string::npos;
+}
 
 }  // namespace
 
@@ -75,6 +81,14 @@ LocalMap MapManager::readForStrategy(std::uint32_t index) const {
 }
 
 ActiveMap MapManager::activeMap(std::uint32_t index) const {
+  LocalMap map = readForStrategy(index);
+  if (usesEdges(file_.metadata())) {
+    map.features.edges = edgeFieldOf(file_.readImage(index));
+  }
+  return activate(*strategy_, map, stamp_s_);
+}
+
+ActiveMap MapManager::activeMapWithoutEdges(std::uint32_t index) const {
   return activate(*strategy_, readForStrategy(index), stamp_s_);
 }
 

@@ -17,7 +17,7 @@
 namespace perennial {
 namespace {
 
-constexpr char kMagic[8] = {'P', 'R', 'N', 'F', 'E', 'A', 'T', '1'};
+constexpr char kMagic[8] = {'P', 'R', 'N', 'F', 'E', 'A', 'T', '2'};
 
 /// FNV-1a, 64 bits.
 std::uint64_t fingerprint(const std::string& data, std::uint64_t hash = 14695981039346656037ULL) {
@@ -27,22 +27,58 @@ std::uint64_t fingerprint(const std::string& data, std::uint64_t hash = 14695981
   return hash;
 }
 
-/// What stands before the two arrays. Byte order of the machine: a cache is not to be carried around.
+/// What stands before the arrays. Byte order of the machine: a cache is not to be carried around.
 struct Header {
   char magic[8];
   std::uint64_t features;
   std::uint64_t checksum;  ///< of the arrays
   std::int32_t image_width;
   std::int32_t image_height;
+  std::int32_t edge_cell_px;
+  std::int32_t edge_columns;
+  std::int32_t edge_rows;
+  std::int32_t unused;
   double extraction_ms;
 };
 
+template <class Array>
+void append(const Array& array, std::string& data) {
+  if (!array.empty()) {
+    data.append(reinterpret_cast<const char*>(array.data()), array.size() * sizeof(array[0]));
+  }
+}
+
+template <class Array>
+void take(std::size_t count, const std::string& data, std::size_t& position, Array& array) {
+  array.resize(count);
+  if (count > 0) {
+    std::memcpy(array.data(), data.data() + position, count * sizeof(array[0]));
+  }
+  position += count * sizeof(array[0]);
+}
+
 std::string arraysOf(const FeatureSet& features) {
-  std::string data(features.size() * (sizeof(Keypoint) + sizeof(Descriptor)), '\0');
-  const std::size_t keypoint_bytes = features.size() * sizeof(Keypoint);
-  std::memcpy(data.data(), features.keypoints.data(), keypoint_bytes);
-  std::memcpy(data.data() + keypoint_bytes, features.descriptors.data(), data.size() - keypoint_bytes);
+  std::string data;
+  append(features.keypoints, data);
+  append(features.descriptors, data);
+  append(features.edges.values, data);
   return data;
+}
+
+std::size_t edgeValues(const Header& header) {
+  return 2 * static_cast<std::size_t>(header.edge_columns) * static_cast<std::size_t>(header.edge_rows);
+}
+
+FeatureSet featuresOf(const Header& header, const std::string& arrays) {
+  FeatureSet features;
+  std::size_t position = 0;
+  take(header.features, arrays, position, features.keypoints);
+  take(header.features, arrays, position, features.descriptors);
+  take(edgeValues(header), arrays, position, features.edges.values);
+  features.edges.cell_px = header.edge_cell_px;
+  features.edges.columns = header.edge_columns;
+  features.edges.rows = header.edge_rows;
+  return features;
 }
 
 }  // namespace
@@ -75,16 +111,11 @@ std::optional<CachedFeatures> FeatureCache::find(const std::string& image,
   std::memcpy(&header, data.data(), sizeof(header));
   const std::string arrays = data.substr(sizeof(header));
   if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0 || header.checksum != fingerprint(arrays) ||
-      arrays.size() != header.features * (sizeof(Keypoint) + sizeof(Descriptor))) {
+      arrays.size() != header.features * (sizeof(Keypoint) + sizeof(Descriptor)) + edgeValues(header)) {
     return std::nullopt;
   }
-  auto features = std::make_shared<FeatureSet>();
-  features->keypoints.resize(header.features);
-  features->descriptors.resize(header.features);
-  const std::size_t keypoint_bytes = header.features * sizeof(Keypoint);
-  std::memcpy(features->keypoints.data(), arrays.data(), keypoint_bytes);
-  std::memcpy(features->descriptors.data(), arrays.data() + keypoint_bytes, arrays.size() - keypoint_bytes);
-  return CachedFeatures{features, header.image_width, header.image_height, header.extraction_ms};
+  auto features = std::make_shared<FeatureSet>(featuresOf(header, arrays));
+  return CachedFeatures{std::move(features), header.image_width, header.image_height, header.extraction_ms};
 }
 
 void FeatureCache::store(const std::string& image, const std::string& extraction,
@@ -97,6 +128,9 @@ void FeatureCache::store(const std::string& image, const std::string& extraction
   header.checksum = fingerprint(arrays);
   header.image_width = features.image_width;
   header.image_height = features.image_height;
+  header.edge_cell_px = features.features->edges.cell_px;
+  header.edge_columns = features.features->edges.columns;
+  header.edge_rows = features.features->edges.rows;
   header.extraction_ms = features.extraction_ms;
 
   const std::string file = fileFor(image, extraction);

@@ -26,6 +26,7 @@ LocalMap teach(const ReplayPlace& place) {
   for (std::size_t i = 0; i < features.size(); ++i) {
     map.add(features.keypoints[i], features.descriptors[i]);
   }
+  map.features.edges = features.edges;
   return map;
 }
 

@@ -26,6 +26,24 @@ void require(bool condition, const char* what) {
   }
 }
 
+/// All alternatives of a local map have the same: those of the taught image.
+void putEdges(const EdgeField& edges, perennial_nav::LocalMap& message) {
+  message.edge_cell_px = static_cast<std::uint16_t>(edges.cell_px);
+  message.edge_columns = static_cast<std::uint16_t>(edges.columns);
+  message.edge_rows = static_cast<std::uint16_t>(edges.rows);
+  message.edges = edges.values;
+}
+
+EdgeField edgesOf(const perennial_nav::LocalMap& message) {
+  EdgeField edges;
+  edges.cell_px = message.edge_cell_px;
+  edges.columns = message.edge_columns;
+  edges.rows = message.edge_rows;
+  edges.values = message.edges;
+  require(edges.sound(), "the edges of a local map do not add up");
+  return edges;
+}
+
 }  // namespace
 
 perennial_nav::Features toMessage(const FeatureSet& features) {
@@ -74,6 +92,9 @@ perennial_nav::LocalMap toMessage(const ActiveMap& map) {
                              alternative.positions.end());
   }
   message.features = toMessage(all);
+  if (!map.alternatives.empty()) {
+    putEdges(map.alternatives.front().features.edges, message);
+  }
   return message;
 }
 
@@ -89,9 +110,11 @@ ActiveMap fromMessage(const perennial_nav::LocalMap& message) {
   ActiveMap map;
   map.index = message.index;
   map.distance_m = message.distance_m;
+  const EdgeField edges = edgesOf(message);
   std::size_t next = 0;
   for (const std::uint32_t size : message.alternative_sizes) {
     ActiveMap::Alternative alternative;
+    alternative.features.edges = edges;
     for (const std::size_t end = next + size; next < end; ++next) {
       alternative.features.add(all.keypoints[next], all.descriptors[next]);
       alternative.positions.push_back(message.positions[next]);

@@ -66,7 +66,7 @@ void Localiser::onTimer() {
 }
 
 void Localiser::compareSome() {
-  std::vector<ActiveMap> maps = traversals_.localMaps(localisation_->next(), kPiece);
+  std::vector<ActiveMap> maps = traversals_.localMaps(localisation_->next(), kPiece, false);
   if (maps.empty()) {
     throw MapError("map_manager has fewer local maps than it said");
   }

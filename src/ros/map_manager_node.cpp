@@ -136,7 +136,7 @@ bool MapManagerNode::onGet(perennial_nav::GetLocalMapsRequest& request,
   const std::size_t end = std::min<std::size_t>(request.first + most, manager_->file().size());
   try {
     for (std::size_t index = request.first; index < end; ++index) {
-      response.maps.push_back(messageWithoutImage(static_cast<std::uint32_t>(index)));
+      response.maps.push_back(messageWithoutImage(static_cast<std::uint32_t>(index), request.with_edges != 0));
     }
     response.success = static_cast<std::uint8_t>(true);
   } catch (const Error& error) {
@@ -147,15 +147,16 @@ bool MapManagerNode::onGet(perennial_nav::GetLocalMapsRequest& request,
   return true;
 }
 
-perennial_nav::LocalMap MapManagerNode::messageWithoutImage(std::uint32_t index) const {
-  perennial_nav::LocalMap message = toMessage(manager_->activeMap(index));
+perennial_nav::LocalMap MapManagerNode::messageWithoutImage(std::uint32_t index, bool with_edges) const {
+  perennial_nav::LocalMap message =
+      toMessage(with_edges ? manager_->activeMap(index) : manager_->activeMapWithoutEdges(index));
   message.header.stamp = stamp_;
   message.traversal = traversal_;
   return message;
 }
 
 perennial_nav::LocalMap MapManagerNode::message(std::uint32_t index) const {
-  perennial_nav::LocalMap message = messageWithoutImage(index);
+  perennial_nav::LocalMap message = messageWithoutImage(index, true);
   message.image.header.stamp = stamp_;
   message.image.format = "png";
   message.image.data = manager_->file().readImagePng(index);

@@ -349,7 +349,7 @@ void RepeatNavigator::followHand(double travelled_m) {
 void RepeatNavigator::fetchLocalMapsBehind(double travelled_m) {
   while (const auto first = run_->session->backedBefore(travelled_m)) {
     const std::size_t count = std::min<std::size_t>(*first, kFetchedBehind);
-    std::vector<ActiveMap> maps = traversals_.localMaps(*first - count, count);
+    std::vector<ActiveMap> maps = traversals_.localMaps(*first - count, count, true);
     if (maps.size() != count) {
       throw MapError("map_manager did not send the local maps before the " + std::to_string(*first) + "th");
     }

@@ -55,7 +55,8 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   return service.response;
 }
 
-std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t count) {
+std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t count,
+                                                  bool with_edges) {
   if (!local_maps_.isValid()) {
     local_maps_ = nh_.serviceClient<perennial_nav::GetLocalMaps>("get_local_maps", true);
   }
@@ -63,6 +64,7 @@ std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t
   service.request.traversal = id_;
   service.request.first = static_cast<std::uint32_t>(first);
   service.request.count = static_cast<std::uint32_t>(count);
+  service.request.with_edges = static_cast<std::uint8_t>(with_edges);
   if (!local_maps_.call(service)) {
     throw MapError("map_manager does not answer on " + local_maps_.getService());
   }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "perennial/core/edge_field.h"
+
 namespace perennial {
 
 /// An interest point of an image. Coordinates are in pixels of the full image, origin at the centre of the
@@ -39,16 +41,21 @@ inline int hammingDistance(const Descriptor& a, const Descriptor& b) noexcept {
   return distance;
 }
 
-/// Features of one image or local map: two arrays of the same length.
+/// Features of one image or local map: two arrays of the same length, and what else of the image serves to
+/// register it.
 struct FeatureSet {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
+  /// Of the whole image: not among what a strategy adds and drops, and computed anew from the taught image
+  /// where a map comes from a file. Empty: registration does without. Not compared.
+  EdgeField edges;
 
   std::size_t size() const { return keypoints.size(); }
   bool empty() const { return keypoints.empty(); }
   void clear() {
     keypoints.clear();
     descriptors.clear();
+    edges.clear();
   }
   void reserve(std::size_t capacity) {
     keypoints.reserve(capacity);

@@ -52,7 +52,7 @@ class MapManagerNode {
             perennial_nav::BeginTraversalResponse& response);
   void learn(const perennial_nav::Registration& message);
   void publishDue(double distance_m);
-  perennial_nav::LocalMap messageWithoutImage(std::uint32_t index) const;
+  perennial_nav::LocalMap messageWithoutImage(std::uint32_t index, bool with_edges) const;
   perennial_nav::LocalMap message(std::uint32_t index) const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 

@@ -28,8 +28,8 @@ class TraversalClient {
   std::uint32_t end(bool commit, const ros::Time& stamp);
 
   /// Local maps of the open traversal from index `first` on, at most `count` of them; none behind the path's
-  /// end.
-  std::vector<ActiveMap> localMaps(std::size_t first, std::size_t count);
+  /// end. With their edges to drive by them, without to look for a place.
+  std::vector<ActiveMap> localMaps(std::size_t first, std::size_t count, bool with_edges);
 
   /// `registration.traversal` is filled in.
   void publish(perennial_nav::Registration registration);

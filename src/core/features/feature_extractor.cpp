@@ -1,6 +1,7 @@
 #include "perennial/core/feature_extractor.h"
 
 #include "core/features/brief_descriptor.h"
+#include "core/features/edge_field_extractor.h"
 #include "core/features/half_image.h"
 #include "core/features/integral_image.h"
 #include "core/features/orientation_descriptor.h"
@@ -34,6 +35,7 @@ struct FeatureExtractor::Implementation {
   SurfDetector detector;
   BriefDescriptor intensity;
   OrientationDescriptor orientation;
+  EdgeFieldExtractor edges;
 
   void describe(const cv::Mat& image, const std::vector<Keypoint>& keypoints, FeatureSet& features);
 };
@@ -74,12 +76,16 @@ void FeatureExtractor::extractInto(const cv::Mat& image, FeatureSet& features) {
                      std::to_string(image.depth()) + "; convert the image first");
   }
   Implementation& parts = *implementation_;
-  if (parts.settings.half_resolution) {
+  const bool oriented = parts.settings.descriptor == DescriptorKind::kOrientation;
+  if (parts.settings.half_resolution || oriented) {
     halveImage(image, parts.half);
   }
   const cv::Mat& searched = parts.settings.half_resolution ? parts.half : image;
   parts.integral.compute(searched);
   parts.describe(searched, parts.detector.detect(parts.integral, BriefDescriptor::kMargin), features);
+  if (oriented) {
+    parts.edges.compute(parts.half, features.edges);
+  }
 }
 
 const ExtractionSettings& FeatureExtractor::settings() const { return implementation_->settings; }

@@ -12,9 +12,9 @@ constexpr double kPrior = 4.0;
 
 }  // namespace
 
-double robustConfidence(const VotePeak& peak) {
+double robustConfidence(const VotePeak& peak, bool by_edges) {
   const double log_lead = std::log((peak.height + kPrior) / (peak.second_height + kPrior));
-  return logistic(-0.689 + 6.504 * log_lead);
+  return by_edges ? logistic(0.54 + 7.65 * log_lead) : logistic(-0.689 + 6.504 * log_lead);
 }
 
 double histogramConfidence(int inliers) {

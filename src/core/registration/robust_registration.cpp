@@ -105,8 +105,9 @@ void RobustRegistration::registerInto(const FeatureSet& map, const FeatureSet& v
     return;
   }
 
-  const VotePeak peak = buffers.profile.findPeak(buffers.votes);
-  result.confidence = robustConfidence(peak);
+  const bool by_edges = buffers.edges.compute(map.edges, view.edges);
+  const VotePeak peak = buffers.profile.findPeak(buffers.votes, by_edges ? &buffers.edges : nullptr);
+  result.confidence = robustConfidence(peak, by_edges);
   result.uncertainty_px = peak.width_px;
   const auto agrees = [&](double difference) {
     return std::abs(difference - peak.displacement_px) <= 1.5 * settings().bin_width_px;

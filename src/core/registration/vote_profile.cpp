@@ -64,9 +64,12 @@ double refine(double place_px, const std::vector<Vote>& votes) {
 
 }  // namespace
 
-VotePeak VoteProfile::findPeak(const std::vector<Vote>& votes) {
-  collect(votes);
+VotePeak VoteProfile::findPeak(const std::vector<Vote>& votes, const EdgeCorrelation* edges) {
+  collect(votes, edges != nullptr ? edges->reach_px() : 0.0);
   smooth();
+  if (edges != nullptr) {
+    add(*edges);
+  }
   const int best = highest();
   VotePeak peak;
   peak.height = smoothed_[static_cast<std::size_t>(best + half_)];
@@ -83,8 +86,8 @@ VotePeak VoteProfile::findPeak(const std::vector<Vote>& votes) {
   return peak;
 }
 
-void VoteProfile::collect(const std::vector<Vote>& votes) {
-  double largest = 0.0;
+void VoteProfile::collect(const std::vector<Vote>& votes, double reach_px) {
+  double largest = reach_px;
   for (const Vote& vote : votes) {
     largest = std::max(largest, std::abs(vote.displacement_px));
   }
@@ -108,6 +111,12 @@ void VoteProfile::smooth() {
       sum += kernel[static_cast<std::size_t>(k)] * (before + after);
     }
     smoothed_[static_cast<std::size_t>(i)] = sum;
+  }
+}
+
+void VoteProfile::add(const EdgeCorrelation& edges) {
+  for (int bin = -half_; bin <= half_; ++bin) {
+    smoothed_[static_cast<std::size_t>(bin + half_)] += kEdgeWeight * edges.at(bin * kBin_px);
   }
 }
 

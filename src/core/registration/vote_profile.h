@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/registration/edge_correlation.h"
+
 namespace perennial {
 
 /// One weighted vote for a displacement.
@@ -26,12 +28,17 @@ class VoteProfile {
       15.0;  ///< deviation of the Gaussian: annotation, parallax, matching together
   static constexpr double kElsewhere_px = 50.0;
 
-  /// `votes` must not be empty. Memory is kept and used again.
-  VotePeak findPeak(const std::vector<Vote>& votes);
+  /// What the edges say (EdgeCorrelation), in votes a deviation.
+  static constexpr double kEdgeWeight = 6.0;
+
+  /// `votes` must not be empty. With `edges` the highest place of votes and edges together is the peak; the
+  /// votes around it say where exactly. Memory is kept and used again.
+  VotePeak findPeak(const std::vector<Vote>& votes, const EdgeCorrelation* edges = nullptr);
 
  private:
-  void collect(const std::vector<Vote>& votes);
+  void collect(const std::vector<Vote>& votes, double reach_px);
   void smooth();
+  void add(const EdgeCorrelation& edges);
   int highest() const;
 
   int half_ = 0;  ///< bins on either side of the middle one

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/registration/descriptor_table.h"
+#include "core/registration/edge_correlation.h"
 #include "core/registration/neighbour_list.h"
 #include "core/registration/vote_profile.h"
 #include "perennial/core/registration.h"
@@ -21,6 +22,7 @@ struct RegistrationWorkspace::Buffers {
   std::vector<NeighbourList> of_map;   ///< nearest view features of each map feature
   std::vector<NeighbourList> of_view;  ///< nearest map features of each view feature
   std::vector<Vote> votes;
+  EdgeCorrelation edges;
   VoteProfile profile;
 };
 

@@ -7,6 +7,7 @@
 #include "core/features/maxima.h"
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
+#include "core/registration/edge_correlation.h"
 #include "core/simd/vector_kernels.h"
 
 namespace perennial {
@@ -19,7 +20,7 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
 
 constexpr Kernels kScalar{"scalar",        differenceColumns, false,    differenceColumnsXxYy,
                           hessianRowAbove, scalarHessianRow,  nextPeak, boxSumRow,
-                          orientationRow,  hammingDistances};
+                          orientationRow,  hammingDistances,   productSum};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

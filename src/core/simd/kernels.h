@@ -43,6 +43,9 @@ struct Kernels {
   /// See hammingDistances() in descriptor_table.h.
   void (*hamming_distances)(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                             std::size_t end, std::uint16_t* distances);
+  /// See productSum() in edge_correlation.h; `count` must be a multiple of kProductBlock.
+  std::int32_t (*product_sum)(const std::int16_t* a, const std::int16_t* b, std::size_t stride,
+                              std::size_t rows, std::size_t count);
 };
 
 /// What this processor can run, the scalar path first, the best one last.

@@ -10,6 +10,7 @@
 #include "core/features/maxima.h"
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
+#include "core/registration/edge_correlation.h"
 
 // Native population counts and the like, where there are any.
 #define HWY_WANT_AVX3_DL
@@ -221,6 +222,21 @@ void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table
   perennial::hammingDistances(descriptor, table, j, end, distances + (j - begin));
 }
 
+std::int32_t productSum(const std::int16_t* a, const std::int16_t* b, std::size_t stride, std::size_t rows,
+                        std::size_t count) {
+  const hn::ScalableTag<std::int16_t> i16;
+  const hn::ScalableTag<std::int32_t> i32;
+  const std::size_t lanes = hn::Lanes(i16);
+  auto even = hn::Zero(i32);
+  auto odd = hn::Zero(i32);
+  for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t x = y * stride; x < y * stride + count; x += lanes) {
+      even = hn::ReorderWidenMulAccumulate(i32, hn::LoadU(i16, a + x), hn::LoadU(i16, b + x), even, odd);
+    }
+  }
+  return hn::GetLane(hn::SumOfLanes(i32, hn::Add(even, odd)));
+}
+
 const Kernels* vectorKernels() {
   static constexpr const char* kName = HWY_TARGET == HWY_AVX3_DL ? "avx512dl"
                                        : HWY_TARGET == HWY_AVX3  ? "avx512"
@@ -231,7 +247,7 @@ const Kernels* vectorKernels() {
                                                                  : "baseline";
   static constexpr Kernels kTable{kName,           differenceColumns, true,     differenceColumnsXxYy,
                                   hessianRowAbove, hessianRow,        nextPeak, boxSumRow,
-                                  orientationRow,  hammingDistances};
+                                  orientationRow,  hammingDistances,  productSum};
   return &kTable;
 }
 
