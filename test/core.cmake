@@ -9,6 +9,7 @@ perennial_gtest(utc_time_test core/utc_time_test.cpp)
 perennial_gtest(features_test
   core/features/brief_descriptor_test.cpp
   core/features/duplicate_filter_test.cpp
+  core/features/edge_field_test.cpp
   core/features/extraction_settings_test.cpp
   core/features/feature_extractor_test.cpp
   core/features/half_and_buckets_test.cpp
@@ -28,6 +29,7 @@ endif()
 perennial_gtest(kernels_test core/simd/kernels_test.cpp LIBRARIES opencv_imgproc DEFINITIONS ${vector_code})
 perennial_gtest(registration_test
   core/registration_test.cpp
+  core/registration/edge_correlation_test.cpp
   core/registration/robust_registration_test.cpp
   core/registration/votes_test.cpp
 )

@@ -101,6 +101,18 @@ TEST_F(TeachRepeat, repeatsWithTheDisplacementOfTheCamera) {
   }
 }
 
+TEST_F(TeachRepeat, aMapComesWithTheEdgesOfItsTaughtImage) {
+  teach();
+  const MapManager manager(MapFile(file()), std::make_shared<strategies::StaticMap>());
+  const EdgeField taught = FeatureExtractor().extract(viewAt(40, 0)).edges;
+  ASSERT_FALSE(taught.empty());
+  ASSERT_EQ(manager.activeMap(20).alternatives.size(), 1U);
+  EXPECT_EQ(manager.activeMap(20).alternatives[0].features.edges, taught);
+  const ActiveMap without = manager.activeMapWithoutEdges(20);
+  EXPECT_TRUE(without.alternatives[0].features.edges.empty());
+  EXPECT_EQ(without.alternatives[0].features, manager.activeMap(20).alternatives[0].features);
+}
+
 TEST_F(TeachRepeat, startsInTheMiddle) {
   teach();
   MapManager manager(MapFile(file()), std::make_shared<strategies::StaticMap>());

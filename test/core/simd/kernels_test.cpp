@@ -13,6 +13,7 @@
 #include "core/features/orientation_image.h"
 #include "core/features/synthetic_images.h"
 #include "core/registration/descriptor_table.h"
+#include "core/registration/edge_correlation.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/registration.h"
 
@@ -111,6 +112,43 @@ TEST_P(EachPath, registersTheSame) {
     EXPECT_EQ(result.states, expected.states);
     EXPECT_EQ(result.confidence, expected.confidence);
   }
+}
+
+TEST_P(EachPath, edgesAreTheSame) {
+  const cv::Mat image = texture(523, 301, 10);
+  const EdgeField found = FeatureExtractor().extract(image).edges;
+  useKernels(scalar());
+  EXPECT_EQ(found, FeatureExtractor().extract(image).edges);
+  EXPECT_FALSE(found.empty());
+}
+
+TEST_P(EachPath, productSumsAreTheSame) {
+  std::mt19937 random(6);
+  std::vector<std::int16_t> a(20 * 300 + 40);
+  std::vector<std::int16_t> b(a.size());
+  const auto fill = [&](int amplitude) {
+    for (auto* values : {&a, &b}) {
+      for (auto& value : *values) {
+        value = static_cast<std::int16_t>(static_cast<int>(random() % (2U * static_cast<unsigned>(amplitude) + 1U)) - amplitude);
+      }
+    }
+  };
+  for (const int amplitude : {1, 127}) {
+    fill(amplitude);
+    for (const std::size_t count : {kProductBlock, 3 * kProductBlock, 8 * kProductBlock}) {
+      for (const std::size_t rows : {0U, 1U, 19U}) {
+        for (const std::size_t offset : {0U, 1U, 38U}) {  // shifts need no alignment
+          EXPECT_EQ(kernels().product_sum(a.data() + offset, b.data(), 300, rows, count),
+                    productSum(a.data() + offset, b.data(), 300, rows, count));
+        }
+      }
+    }
+  }
+  // The largest fields there are, with the largest values.
+  const std::size_t cells = EdgeField::kMostCells;
+  const std::vector<std::int16_t> extreme(2 * cells * cells, -127);
+  EXPECT_EQ(kernels().product_sum(extreme.data(), extreme.data(), 2 * cells, cells, 2 * cells),
+            static_cast<std::int32_t>(2 * cells * cells * 127 * 127));
 }
 
 TEST_P(EachPath, distancesAreThoseOfTwoDescriptors) {
