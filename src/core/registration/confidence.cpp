@@ -14,7 +14,7 @@ constexpr double kPrior = 4.0;
 
 double robustConfidence(const VotePeak& peak, bool by_edges) {
   const double log_lead = std::log((peak.height + kPrior) / (peak.second_height + kPrior));
-  return by_edges ? logistic(0.54 + 7.65 * log_lead) : logistic(-0.689 + 6.504 * log_lead);
+  return by_edges ? logistic(-1.019 + 7.997 * log_lead) : logistic(-0.689 + 6.504 * log_lead);
 }
 
 double histogramConfidence(int inliers) {
