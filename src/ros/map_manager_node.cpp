@@ -136,7 +136,8 @@ bool MapManagerNode::onGet(perennial_nav::GetLocalMapsRequest& request,
   const std::size_t end = std::min<std::size_t>(request.first + most, manager_->file().size());
   try {
     for (std::size_t index = request.first; index < end; ++index) {
-      response.maps.push_back(messageWithoutImage(static_cast<std::uint32_t>(index), request.with_edges != 0));
+      response.maps.push_back(
+          messageWithoutImage(static_cast<std::uint32_t>(index), request.with_edges != 0));
     }
     response.success = static_cast<std::uint8_t>(true);
   } catch (const Error& error) {

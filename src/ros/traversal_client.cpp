@@ -55,8 +55,7 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   return service.response;
 }
 
-std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t count,
-                                                  bool with_edges) {
+std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t count, bool with_edges) {
   if (!local_maps_.isValid()) {
     local_maps_ = nh_.serviceClient<perennial_nav::GetLocalMaps>("get_local_maps", true);
   }

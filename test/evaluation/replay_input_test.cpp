@@ -39,13 +39,14 @@ class ReplayInputTest : public ::testing::Test {
     return noise(cv::Rect(left_px, 0, width, 150)).clone();
   }
 
-  ReplayInput load(const ReplaySelection& selection = {}) {
+  ReplayInput load(const ReplaySelection& selection = {},
+                   const ExtractionSettings& extraction = ExtractionSettings::published()) {
     const Dataset dataset = loadDataset(folder_.path());
     problems_.clear();
     images_ = 0;
-    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_),
-                           {ExtractionSettings::published(), false}, FeatureCache(folder_ / "cache"), 2,
-                           problems_, [&](std::size_t done) { images_ = std::max(images_, done); });
+    return loadReplayInput(dataset, selectPlaces(dataset, selection, problems_), {extraction, false},
+                           FeatureCache(folder_ / "cache"), 2, problems_,
+                           [&](std::size_t done) { images_ = std::max(images_, done); });
   }
 
   bool hasProblem(const std::string& where, const std::string& what) const {
@@ -91,6 +92,14 @@ TEST_F(ReplayInputTest, takesFeaturesFromTheCache) {
       EXPECT_TRUE(*first.places[p].views[v].features == *second.places[p].views[v].features);
     }
   }
+}
+
+TEST_F(ReplayInputTest, takesEdgesFromTheCache) {
+  const ReplayInput first = load({}, {});
+  const ReplayInput second = load({}, {});
+  EXPECT_EQ(first.ms_per_extraction, second.ms_per_extraction) << "measured when they were extracted";
+  EXPECT_FALSE(first.places[0].views[0].features->edges.empty());
+  EXPECT_EQ(first.places[0].views[0].features->edges, second.places[0].views[0].features->edges);
 }
 
 TEST_F(ReplayInputTest, aDamagedCacheIsNoCache) {

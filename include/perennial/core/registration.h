@@ -133,9 +133,9 @@ class HistogramRegistration : public Registration {
 /// Only features within the vertical gate are compared. Each map feature votes for the displacements to its
 /// five nearest view features, and a vote weighs 1 / (a b) where the two are each other's a-th and b-th
 /// nearest (a, b <= 5; mutual nearest neighbours have weight 1): no threshold on descriptors decides before
-/// the scene as a whole is heard. The votes, smoothed by a Gaussian, have a peak, which is refined to a
-/// fraction of a pixel (mean shift: Comaniciu and Meer, PAMI 2002). Of equal peaks the one nearer to zero
-/// wins, then the positive one.
+/// the scene as a whole is heard. To the votes, smoothed by a Gaussian, the match of both images' edges
+/// (FeatureSet::edges) is added; the peak of the sum is refined by the votes to a fraction of a pixel (mean
+/// shift: Comaniciu and Meer, PAMI 2002). Of equal peaks the one nearer to zero wins, then the positive one.
 ///
 /// Pairs, which decide on the features' states and count as inliers, are mutual nearest neighbours that
 /// resemble each other; they agree within 1.5 bins. `histogram` holds the pairs, in hard bins, for people to

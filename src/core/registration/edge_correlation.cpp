@@ -9,7 +9,9 @@
 namespace perennial {
 namespace {
 
-std::size_t roundedUp(std::size_t count) { return (count + kProductBlock - 1) / kProductBlock * kProductBlock; }
+std::size_t roundedUp(std::size_t count) {
+  return (count + kProductBlock - 1) / kProductBlock * kProductBlock;
+}
 
 }  // namespace
 
@@ -52,7 +54,8 @@ void EdgeCorrelation::widen(const EdgeField& field, Wide& wide) const {
     std::copy(row, row + count, wide.values.begin() + static_cast<std::ptrdiff_t>(y * stride_));
   }
   const std::int16_t* const values = wide.values.data();
-  wide.norm = std::sqrt(static_cast<double>(kernels().product_sum(values, values, stride_, rows, roundedUp(count))));
+  wide.norm =
+      std::sqrt(static_cast<double>(kernels().product_sum(values, values, stride_, rows, roundedUp(count))));
 }
 
 double EdgeCorrelation::shifted(const EdgeField& layout, int dx, int dy) const {
@@ -62,8 +65,8 @@ double EdgeCorrelation::shifted(const EdgeField& layout, int dx, int dy) const {
     return static_cast<std::size_t>(std::max(y, 0)) * stride_ + 2 * static_cast<std::size_t>(std::max(x, 0));
   };
   const std::int32_t sum =
-      kernels().product_sum(map_.values.data() + place(dx, dy), view_.values.data() + place(-dx, -dy), stride_,
-                            rows, roundedUp(2 * columns));
+      kernels().product_sum(map_.values.data() + place(dx, dy), view_.values.data() + place(-dx, -dy),
+                            stride_, rows, roundedUp(2 * columns));
   return sum / std::sqrt(static_cast<double>(columns * rows));
 }
 

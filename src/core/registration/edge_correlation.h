@@ -12,8 +12,8 @@ namespace perennial {
 ///
 /// Correlation of the two fields over all horizontal shifts that leave half the image in common and vertical
 /// ones up to kVertical_px, divided by the root of what overlaps, so that chance is as large everywhere: 1 is
-/// the deviation of unrelated cells. Smoothed (1 2 1) along both axes; the best of all vertical shifts counts,
-/// less the median over the horizontal ones. The sums are whole numbers: the same on every processor.
+/// the deviation of unrelated cells. Smoothed (1 2 1) along both axes; the best of all vertical shifts
+/// counts, less the median over the horizontal ones. The sums are whole numbers: the same on every processor.
 class EdgeCorrelation {
  public:
   static constexpr int kVertical_px = 96;

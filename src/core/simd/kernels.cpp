@@ -18,9 +18,9 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
   hessianRow(differences, filter, begin, 1, count, responses);
 }
 
-constexpr Kernels kScalar{"scalar",        differenceColumns, false,    differenceColumnsXxYy,
-                          hessianRowAbove, scalarHessianRow,  nextPeak, boxSumRow,
-                          orientationRow,  hammingDistances,   productSum};
+constexpr Kernels kScalar{"scalar",        differenceColumns, false,     differenceColumnsXxYy,
+                          hessianRowAbove, scalarHessianRow,  nextPeak,  boxSumRow,
+                          orientationRow,  hammingDistances,  productSum};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

@@ -245,8 +245,8 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,           differenceColumns, true,     differenceColumnsXxYy,
-                                  hessianRowAbove, hessianRow,        nextPeak, boxSumRow,
+  static constexpr Kernels kTable{kName,           differenceColumns, true,      differenceColumnsXxYy,
+                                  hessianRowAbove, hessianRow,        nextPeak,  boxSumRow,
                                   orientationRow,  hammingDistances,  productSum};
   return &kTable;
 }

@@ -21,9 +21,9 @@ TEST(EdgeField, cellsGrowWithTheImage) {
     cv::Size size;
     int cell_px, columns, rows;
   };
-  for (const Case& c : {Case{{752, 480}, 8, 94, 60}, Case{{1024, 384}, 8, 128, 48},
-                        Case{{1032, 384}, 16, 64, 24}, Case{{1920, 1080}, 16, 120, 67},
-                        Case{{300, 1100}, 16, 18, 68}, Case{{23, 8}, 8, 2, 1}}) {
+  for (const Case& c :
+       {Case{{752, 480}, 8, 94, 60}, Case{{1024, 384}, 8, 128, 48}, Case{{1032, 384}, 16, 64, 24},
+        Case{{1920, 1080}, 16, 120, 67}, Case{{300, 1100}, 16, 18, 68}, Case{{23, 8}, 8, 2, 1}}) {
     const EdgeField field = edgeFieldOf(texture(c.size.width, c.size.height, 1));
     EXPECT_EQ(field.cell_px, c.cell_px) << c.size;
     EXPECT_EQ(field.columns, c.columns) << c.size;

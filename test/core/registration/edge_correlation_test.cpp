@@ -127,7 +127,8 @@ TEST(EdgeCorrelation, findsTheSharedPartAndItsVerticalShift) {
   EdgeCorrelation correlation;
   for (const int dx : {-30, -1, 0, 7, 40}) {
     // The view looks `dx` cells further right and 10 further down: x_map - x_view is positive.
-    ASSERT_TRUE(correlation.compute(part(wide, 40, 10, 94, 50), part(wide, std::min(40 + dx, 46), 20, 94, 50)));
+    ASSERT_TRUE(
+        correlation.compute(part(wide, 40, 10, 94, 50), part(wide, std::min(40 + dx, 46), 20, 94, 50)));
     EXPECT_EQ(highestAt(correlation), 8.0 * std::min(dx, 6));
     EXPECT_GT(correlation.at(8.0 * std::min(dx, 6)), 8.0) << "deviations of chance";
   }
@@ -139,7 +140,8 @@ TEST(EdgeCorrelation, isLinearBetweenStepsAndZeroBeyond) {
   EXPECT_EQ(correlation.reach_px(), 80.0);
   EXPECT_EQ(correlation.at(-80.0), correlation.profile().front());
   EXPECT_EQ(correlation.at(80.0), correlation.profile().back());
-  EXPECT_NEAR(correlation.at(2.0), 0.75 * correlation.profile()[10] + 0.25 * correlation.profile()[11], 1e-12);
+  EXPECT_NEAR(correlation.at(2.0), 0.75 * correlation.profile()[10] + 0.25 * correlation.profile()[11],
+              1e-12);
   EXPECT_EQ(correlation.at(80.5), 0.0);
   EXPECT_EQ(correlation.at(-1000.0), 0.0);
 }

@@ -129,7 +129,8 @@ TEST_P(EachPath, productSumsAreTheSame) {
   const auto fill = [&](int amplitude) {
     for (auto* values : {&a, &b}) {
       for (auto& value : *values) {
-        value = static_cast<std::int16_t>(static_cast<int>(random() % (2U * static_cast<unsigned>(amplitude) + 1U)) - amplitude);
+        value = static_cast<std::int16_t>(
+            static_cast<int>(random() % (2U * static_cast<unsigned>(amplitude) + 1U)) - amplitude);
       }
     }
   };
