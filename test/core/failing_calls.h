@@ -4,9 +4,9 @@
 
 namespace perennial {
 
-/// System calls that change files, made to fail by the program that this is linked into: write, pwrite, fsync,
-/// ftruncate, fchmod, link, rename, unlink, wherever they are called from. Numbered from 1 since `arm`.
-/// One thread.
+/// System calls that change files, made to fail by the program that this is linked into: write, pwrite,
+/// fsync, ftruncate, fchmod, link, rename, unlink, wherever they are called from. Numbered from 1 since
+/// `arm`. One thread.
 class FailingCalls {
  public:
   enum class How {

@@ -8,9 +8,9 @@
 
 namespace perennial {
 
-/// test/data/format1.perennial and what it holds. It was written by the last program of format version 1, with
-/// these same random numbers: five local maps, and two traversals that changed two of them each. It was taught
-/// comparing intensities, which the text of its extraction does not say.
+/// test/data/format1.perennial and what it holds. It was written by the last program of format version 1,
+/// with these same random numbers: five local maps, and two traversals that changed two of them each. It was
+/// taught comparing intensities, which the text of its extraction does not say.
 struct Format1Map {
   static constexpr std::uint32_t kLocalMaps = 5;
   static constexpr std::uint32_t kTraversals = 2;

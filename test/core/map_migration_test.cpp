@@ -130,7 +130,8 @@ TEST_F(MapMigrationTest, whateverWritesMigratesFirstAndKeepsEveryBit) {
     }
     expectMigrated("writer " + std::to_string(i));
   }
-  EXPECT_EQ(listMaps(folder_ / ""), std::vector<std::string>{"garden"}) << "the original is no map by its name";
+  EXPECT_EQ(listMaps(folder_ / ""), std::vector<std::string>{"garden"})
+      << "the original is no map by its name";
 }
 
 TEST_F(MapMigrationTest, theTraversalThatMigratedIsLearnedAndTheNextDoesNotMigrateAgain) {
@@ -170,7 +171,8 @@ TEST_F(MapMigrationTest, whoeverOpenedTheOriginalBeforeReadsOnButDoesNotWriteToI
   migrate(file_);
   EXPECT_TRUE(sameBits(before.read(1), old_.states[2][1]));
   fs::remove(kept_);  // so that only the check itself can prevent a second migration
-  EXPECT_NE(errorOf([&] { before.beginTraversal("latest/1", 1.0); }).find("open it again"), std::string::npos);
+  EXPECT_NE(errorOf([&] { before.beginTraversal("latest/1", 1.0); }).find("open it again"),
+            std::string::npos);
   EXPECT_FALSE(fs::exists(kept_));
   EXPECT_EQ(MapFile(file_).formatVersion(), 2U);
 }

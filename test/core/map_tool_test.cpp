@@ -77,8 +77,8 @@ TEST_F(MapToolTest, listsLocalMapsAndMaps) {
 TEST_F(MapToolTest, printsInfo) {
   const Result info = run("info " + file_);
   EXPECT_EQ(info.status, 0);
-  for (const char* part : {"garden", "format version  2\n", "12x8 px, mono8", "surf-brief/1 features=500", "0.8 m", "3 entries",
-                           "1 beside the teaching", "2023-11-14T22:13:20.123457Z"}) {
+  for (const char* part : {"garden", "format version  2\n", "12x8 px, mono8", "surf-brief/1 features=500",
+                           "0.8 m", "3 entries", "1 beside the teaching", "2023-11-14T22:13:20.123457Z"}) {
     EXPECT_NE(info.output.find(part), std::string::npos) << part << " is not in " << info.output;
   }
 }
@@ -98,8 +98,9 @@ TEST_F(MapToolTest, readsAMapOfFormat1AsItIsAndMigratesItWhenItIsToBeWritten) {
   }
   const Result rolled_back = run("rollback " + file + " --to 1");
   EXPECT_EQ(rolled_back.status, 0) << rolled_back.output;
-  EXPECT_NE(rolled_back.output.find("migrated to format version 2; the original is kept as '" + file + ".format1'"),
-            std::string::npos)
+  EXPECT_NE(
+      rolled_back.output.find("migrated to format version 2; the original is kept as '" + file + ".format1'"),
+      std::string::npos)
       << rolled_back.output;
   EXPECT_EQ(bytesOf(file + ".format1"), original);
   EXPECT_NE(run("info " + file).output.find("format version  2\n"), std::string::npos);

@@ -46,8 +46,8 @@ struct LocalMapPlace {
   double distance_m = 0.0;
 };
 
-/// Where the original of a map is kept, beside it, when it is migrated from this version of the format. No map
-/// by its name.
+/// Where the original of a map is kept, beside it, when it is migrated from this version of the format. No
+/// map by its name.
 std::string keptMapFile(const std::string& file, std::uint32_t format_version);
 
 /// What takes how much room in a map file.

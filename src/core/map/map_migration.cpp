@@ -40,11 +40,10 @@ void requireFaithful(const Database& source, const std::string& file) {
   if (!problems.empty()) {
     throw MapError(problems.front());
   }
-  for (const char* checksums : {"SELECT crc FROM profile ORDER BY entry",
-                                "SELECT crc FROM local_map ORDER BY local_map",
-                                "SELECT crc FROM image ORDER BY local_map",
-                                "SELECT crc FROM traversal ORDER BY traversal",
-                                "SELECT crc FROM state ORDER BY local_map, traversal"}) {
+  for (const char* checksums :
+       {"SELECT crc FROM profile ORDER BY entry", "SELECT crc FROM local_map ORDER BY local_map",
+        "SELECT crc FROM image ORDER BY local_map", "SELECT crc FROM traversal ORDER BY traversal",
+        "SELECT crc FROM state ORDER BY local_map, traversal"}) {
     requireSameRows(source, copy, checksums);
   }
 }

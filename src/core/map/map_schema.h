@@ -9,8 +9,8 @@ namespace perennial {
 /// "PRNL", in the header of the file: says that an SQLite file is a map.
 constexpr std::uint32_t kMapApplicationId = 0x50524E4C;
 
-/// Version of the format, SQLite's user_version. 0: a map whose teaching has not been finished. Older versions
-/// are read as they are, and migrated when something is to be written (map_migration.h).
+/// Version of the format, SQLite's user_version. 0: a map whose teaching has not been finished. Older
+/// versions are read as they are, and migrated when something is to be written (map_migration.h).
 constexpr std::uint32_t kMapFormatVersion = 2;
 
 /// Creates the tables in an empty database.

@@ -19,8 +19,8 @@ class PartialFile {
     kCopy,    ///< in `<final_file>.copy`; one left behind can be made again, however complete
   };
 
-  /// Creates the file, empty, and its folder. One left behind by a crash is replaced; one that another program
-  /// is writing, or that is a complete new map which could not be given its name, is refused.
+  /// Creates the file, empty, and its folder. One left behind by a crash is replaced; one that another
+  /// program is writing, or that is a complete new map which could not be given its name, is refused.
   explicit PartialFile(const std::string& final_file, Content content = Content::kNewMap);
   /// Removes the file unless it was published or kept.
   ~PartialFile();
