@@ -49,10 +49,19 @@ perennial_gtest(place_finder_test core/place_finder_test.cpp)
 perennial_gtest(map_damage_test core/map_damage_test.cpp LIBRARIES SQLite::SQLite3)
 perennial_gtest(map_fault_test core/map_fault_test.cpp core/faulty_vfs.cpp LIBRARIES SQLite::SQLite3)
 perennial_gtest(map_file_test core/map_file_test.cpp)
+set(format1_map FORMAT1_MAP="${CMAKE_CURRENT_SOURCE_DIR}/data/format1.perennial")
+perennial_gtest(map_migration_test core/map_migration_test.cpp
+  LIBRARIES perennial_strategies SQLite::SQLite3
+  DEFINITIONS ${format1_map}
+)
+perennial_gtest(map_migration_fault_test core/map_migration_fault_test.cpp core/failing_calls.cpp core/faulty_vfs.cpp
+  LIBRARIES SQLite::SQLite3 ${CMAKE_DL_LIBS}
+  DEFINITIONS ${format1_map}
+)
 perennial_gtest(map_name_test core/map_name_test.cpp)
 perennial_gtest(map_tool_test core/map_tool_test.cpp
   LIBRARIES opencv_imgcodecs ${YAML_CPP_LIBRARIES}
-  DEFINITIONS MAP_TOOL="$<TARGET_FILE:map_tool>"
+  DEFINITIONS MAP_TOOL="$<TARGET_FILE:map_tool>" ${format1_map}
   DEPENDS map_tool
 )
 if(TARGET map_tool_test)

@@ -41,7 +41,12 @@ void MapManager::beginTraversal(double stamp_s) {
   if (in_traversal_) {
     endTraversal(false, stamp_s);
   }
-  file_.beginTraversal(numbersOwner(*strategy_), stamp_s);
+  cannot_learn_.clear();
+  try {
+    file_.beginTraversal(numbersOwner(*strategy_), stamp_s);
+  } catch (const MigrationError& error) {
+    cannot_learn_ = error.what();
+  }
   in_traversal_ = true;
   stamp_s_ = stamp_s;
   handed_out_any_ = false;
@@ -100,7 +105,7 @@ void MapManager::observe(std::uint32_t index, double local_map_distance_m, Obser
   if (index >= kPlacesUntilLearned) {
     learn(index - kPlacesUntilLearned + 1);
   }
-  if (!teaches(observation, settings_.gate) || index < learned_before_) {
+  if (!cannot_learn_.empty() || !teaches(observation, settings_.gate) || index < learned_before_) {
     return;
   }
   const double offset_m = std::abs(observation.distance_m - local_map_distance_m);
@@ -130,6 +135,9 @@ std::size_t MapManager::endTraversal(bool commit, double stamp_s) {
     throw Error("no traversal of " + file_.metadata().name + " to end");
   }
   in_traversal_ = false;
+  if (!cannot_learn_.empty()) {
+    return 0;
+  }
   if (!commit) {
     file_.discardTraversal();
     return 0;

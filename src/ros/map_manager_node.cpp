@@ -80,12 +80,11 @@ void MapManagerNode::open(const perennial_nav::BeginTraversalRequest& request,
                           perennial_nav::BeginTraversalResponse& response) {
   manager_ = std::make_unique<MapManager>(MapFile(existingMapFile(settings_.map_folder, request.map_name)),
                                           strategy_, manager_settings_);
-  manager_->beginTraversal(request.stamp.toSec());
+  beginTraversal(request.stamp.toSec());
   ++traversal_;
   registrations_ = 0;
   window_begin_ = window_end_ = 0;
   stamp_ = request.stamp;
-  problem_.clear();
 
   const MapMetadata& metadata = manager_->file().metadata();
   response.node = ros::this_node::getName();
@@ -100,6 +99,20 @@ void MapManagerNode::open(const perennial_nav::BeginTraversalRequest& request,
   response.map_interval_m = metadata.map_interval_m;
   response.profile = toMessage(manager_->file().profile());
   publishDue(request.start_distance_m);
+}
+
+void MapManagerNode::beginTraversal(double stamp_s) {
+  const std::uint32_t version = manager_->file().formatVersion();
+  manager_->beginTraversal(stamp_s);
+  const MapFile& file = manager_->file();
+  if (file.formatVersion() != version) {
+    ROS_INFO("map '%s' was migrated to format version %u; the original is kept as '%s'", file.file().c_str(),
+             file.formatVersion(), keptMapFile(file.file(), version).c_str());
+  }
+  problem_ = manager_->cannotLearn();
+  if (!problem_.empty()) {
+    ROS_ERROR("this traversal will not be learned from: %s", problem_.c_str());
+  }
 }
 
 void MapManagerNode::onSubscriber(const ros::SingleSubscriberPublisher& subscriber) {

@@ -36,6 +36,13 @@ std::string megabytes(std::uint64_t bytes) {
   return text;
 }
 
+void printMigration(const MapFile& map, std::uint32_t version_before, std::ostream& out) {
+  if (map.formatVersion() != version_before) {
+    out << "map '" << map.file() << "' was migrated to format version " << map.formatVersion()
+        << "; the original is kept as '" << keptMapFile(map.file(), version_before) << "'\n";
+  }
+}
+
 void listFolder(const std::string& folder, std::ostream& out) {
   for (const std::string& name : listMaps(folder)) {
     out << name << "  ";
@@ -71,6 +78,7 @@ void printInfo(const std::string& file, std::ostream& out) {
   const MapMetadata& metadata = map.metadata();
   const MapSizes sizes = map.sizes();
   out << "name            " << metadata.name << "\n"
+      << "format version  " << map.formatVersion() << "\n"
       << "camera          " << metadata.camera << "\n"
       << "images          " << metadata.image_width << "x" << metadata.image_height << " px, "
       << metadata.image_encoding << "\n"
@@ -111,7 +119,9 @@ void printHistory(const std::string& file, std::ostream& out) {
 void rollBack(const std::string& file, std::uint32_t traversal, std::ostream& out) {
   MapFile map(file);
   const std::size_t before = map.traversals().size();
+  const std::uint32_t version = map.formatVersion();
   map.rollback(traversal);
+  printMigration(map, version, out);
   out << "map '" << file << "': " << before - map.traversals().size()
       << " traversals forgotten; the newest is now " << traversal << "\n";
 }
@@ -120,7 +130,9 @@ void compactMap(const std::string& file, std::uint32_t keep, std::ostream& out) 
   MapFile map(file);
   const std::size_t traversals = map.traversals().size();
   const std::uint64_t before = map.sizes().file_bytes;
+  const std::uint32_t version = map.formatVersion();
   map.compact(keep);
+  printMigration(map, version, out);
   out << "map '" << file << "': " << traversals - map.traversals().size()
       << " traversals merged into others, " << megabytes(before) << " before, "
       << megabytes(map.sizes().file_bytes) << " now\n";

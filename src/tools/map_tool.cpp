@@ -39,8 +39,8 @@ usage: map_tool list FILE             local maps: index, distance, time of teach
                                       images, because those of another extractor cannot be compared with ours.
                                       ENCODING is that of the camera to drive with (mono8; bgr8 for coloured images)
 
-FILE is the file of a map (*.perennial). Nothing but rollback and compact changes it; import
-writes a new one. Needs no ROS master.
+FILE is the file of a map (*.perennial). Nothing but rollback and compact changes it; before they do,
+a map of an older format version is migrated and its original kept beside it. import writes a new one. Needs no ROS master.
 exit status: 0 success; 1 the map is damaged or something else went wrong; 2 wrong use
 )";
 

@@ -198,7 +198,7 @@ TEST_F(MapDamageTest, changedRowsAreFound) {
       "DROP TABLE image",
       "CREATE TABLE more(a)",
       "CREATE TRIGGER t AFTER INSERT ON state BEGIN DELETE FROM state; END",
-      "PRAGMA user_version = 2",
+      "PRAGMA user_version = 3",
       "PRAGMA user_version = 0",
       "PRAGMA application_id = 1",
   };
@@ -247,10 +247,10 @@ TEST_F(MapDamageTest, anotherProgramsDatabase) {
 }
 
 TEST_F(MapDamageTest, newerFormat) {
-  forge(file_, "PRAGMA user_version = 2");
-  expectMentions(openingError(), {"format version 2", "up to 1", "newer program"});
+  forge(file_, "PRAGMA user_version = 3");
+  expectMentions(openingError(), {"format version 3", "up to 2", "newer program"});
   runSql(file_, "CREATE TABLE newer(a)");  // without page checksums, as a newer format might be
-  expectMentions(openingError(), {"format version 2", "up to 1", "newer program"});
+  expectMentions(openingError(), {"format version 3", "up to 2", "newer program"});
 }
 
 TEST_F(MapDamageTest, unfinishedTeaching) {

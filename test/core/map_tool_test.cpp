@@ -10,7 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "map_test_support.h"
+#include "format1_map.h"
 #include "perennial/core/feature_extractor.h"
 
 namespace perennial {
@@ -77,10 +77,34 @@ TEST_F(MapToolTest, listsLocalMapsAndMaps) {
 TEST_F(MapToolTest, printsInfo) {
   const Result info = run("info " + file_);
   EXPECT_EQ(info.status, 0);
-  for (const char* part : {"garden", "12x8 px, mono8", "surf-brief/1 features=500", "0.8 m", "3 entries",
-                           "1 beside the teaching", "2023-11-14T22:13:20.123457Z"}) {
+  for (const char* part : {"garden", "format version  2\n", "12x8 px, mono8", "surf-brief/1 features=500",
+                           "0.8 m", "3 entries", "1 beside the teaching", "2023-11-14T22:13:20.123457Z"}) {
     EXPECT_NE(info.output.find(part), std::string::npos) << part << " is not in " << info.output;
   }
+}
+
+TEST_F(MapToolTest, readsAMapOfFormat1AsItIsAndMigratesItWhenItIsToBeWritten) {
+  const std::string file = folder_ / "old.perennial";
+  fs::copy_file(FORMAT1_MAP, file);
+  const std::vector<char> original = bytesOf(file);
+  const Result info = run("info " + file);
+  EXPECT_NE(info.output.find("format version  1\n"), std::string::npos) << info.output;
+  EXPECT_NE(info.output.find(ExtractionSettings::published().describe()), std::string::npos) << info.output;
+  for (const std::string& command : {"list " + file, "list " + folder_ / "", "verify " + file,
+                                     "history " + file, "export " + file + " --out " + folder_ / "out"}) {
+    const Result result = run(command);
+    EXPECT_EQ(result.status, 0) << command << ": " << result.output;
+    EXPECT_EQ(bytesOf(file), original) << command;
+  }
+  const Result rolled_back = run("rollback " + file + " --to 1");
+  EXPECT_EQ(rolled_back.status, 0) << rolled_back.output;
+  EXPECT_NE(
+      rolled_back.output.find("migrated to format version 2; the original is kept as '" + file + ".format1'"),
+      std::string::npos)
+      << rolled_back.output;
+  EXPECT_EQ(bytesOf(file + ".format1"), original);
+  EXPECT_NE(run("info " + file).output.find("format version  2\n"), std::string::npos);
+  EXPECT_EQ(run("list " + folder_ / "").output.find("format1"), std::string::npos);
 }
 
 TEST_F(MapToolTest, verifies) {

@@ -25,6 +25,13 @@ class MapError : public Error {
   using Error::Error;
 };
 
+/// A map of an older format could not be migrated to the present one, for want of room, say. It is as it was,
+/// and can be read.
+class MigrationError : public MapError {
+ public:
+  using MapError::MapError;
+};
+
 /// An image has another size or encoding than expected, or cannot be read.
 class ImageError : public Error {
  public:

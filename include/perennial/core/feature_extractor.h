@@ -55,8 +55,8 @@ struct ExtractionSettings {
   static ExtractionSettings load(ParameterReader& reader);
 
   /// Canonical text, equal for equal settings, stored with a map: "surf-brief/1 features=500 octaves=4 ...".
-  /// Resolution, buckets and kind of descriptor are named only when they are not the published ones, so that
-  /// maps from before they existed stay usable.
+  /// Resolution and buckets are named only when they are not the published ones, so that maps from before
+  /// they existed stay usable; the kind of descriptor always, as map format 2 wants it.
   std::string describe() const;
 };
 

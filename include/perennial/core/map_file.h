@@ -46,6 +46,10 @@ struct LocalMapPlace {
   double distance_m = 0.0;
 };
 
+/// Where the original of a map is kept, beside it, when it is migrated from this version of the format. No
+/// map by its name.
+std::string keptMapFile(const std::string& file, std::uint32_t format_version);
+
 /// What takes how much room in a map file.
 struct MapSizes {
   std::uint64_t file_bytes = 0;
@@ -91,8 +95,14 @@ class MapWriter {
 /// Changes are staged by a traversal and appear in one transaction, commitTraversal(). States of earlier
 /// traversals are kept, the taught state always. One thread at a time. Any number of programs may read one
 /// file; one may have a traversal open, which is an SQLite RESERVED lock on the file: the second is refused,
-/// readers go on, and the lock goes with its process. Throws MapError, with the file's name and what to do,
-/// for a file that is missing, no map, damaged, or of another format version.
+/// readers go on, and the lock goes with its process.
+///
+/// A map of an older format version is read as it is. What writes to it (beginTraversal(), rollback(),
+/// compact()) first puts a copy in the present format in its place and keeps the original as keptMapFile();
+/// where that fails, MigrationError, and the map is as it was.
+///
+/// Throws MapError, with the file's name and what to do, for a file that is missing, no map, damaged, or of a
+/// newer format version.
 class MapFile {
  public:
   explicit MapFile(const std::string& file);
@@ -104,6 +114,7 @@ class MapFile {
   const MapMetadata& metadata() const;
   const PathProfile& profile() const;
   std::size_t size() const;  ///< number of local maps
+  std::uint32_t formatVersion() const;
 
   /// Local map `index`, in its newest committed or staged state; or in the committed state after `traversal`.
   LocalMap read(std::uint32_t index) const;

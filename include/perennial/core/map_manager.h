@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "perennial/core/active_map.h"
@@ -33,8 +34,12 @@ class MapManager {
              const MapManagerSettings& settings = {});
 
   /// `stamp_s`: time of the traversal, by which the strategy chooses features. An open traversal is
-  /// discarded.
+  /// discarded. A map of an older format that cannot be migrated now (disk full) is used as it is:
+  /// cannotLearn() says why.
   void beginTraversal(double stamp_s);
+
+  /// Why the open traversal teaches the map nothing, whatever is observed; "" when it does.
+  const std::string& cannotLearn() const { return cannot_learn_; }
 
   /// Local maps to send for a robot at this distance: those around it that were not handed out in this
   /// traversal yet, in order, without gaps; always including the next two, however far.
@@ -72,6 +77,7 @@ class MapManager {
   MapManagerSettings settings_;
 
   bool in_traversal_ = false;
+  std::string cannot_learn_;
   double stamp_s_ = 0.0;
   std::uint32_t next_due_ = 0;
   bool handed_out_any_ = false;

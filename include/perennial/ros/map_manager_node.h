@@ -48,6 +48,8 @@ class MapManagerNode {
   void onRegistration(const perennial_nav::RegistrationConstPtr& message);
   void onSubscriber(const ros::SingleSubscriberPublisher& subscriber);
 
+  /// In the present format, when the map can be migrated; else without learning.
+  void beginTraversal(double stamp_s);
   void open(const perennial_nav::BeginTraversalRequest& request,
             perennial_nav::BeginTraversalResponse& response);
   void learn(const perennial_nav::Registration& message);

@@ -90,11 +90,11 @@ class SyntheticPlace {
   FeatureSet landmarks_;
 };
 
-/// The features at these positions.
+/// The features at these positions; a position beyond the map throws std::out_of_range.
 inline FeatureSet selected(const FeatureSet& features, const std::vector<std::size_t>& positions) {
   FeatureSet result;
   for (const std::size_t i : positions) {
-    result.add(features.keypoints[i], features.descriptors[i]);
+    result.add(features.keypoints.at(i), features.descriptors.at(i));
   }
   return result;
 }

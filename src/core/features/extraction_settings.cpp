@@ -66,10 +66,7 @@ std::string ExtractionSettings::describe() const {
   if (bucket_columns * bucket_rows > 1) {
     text += " buckets=" + std::to_string(bucket_columns) + "x" + std::to_string(bucket_rows);
   }
-  if (descriptor != DescriptorKind::kIntensity) {
-    text += std::string(" descriptor=") + nameOf(descriptor);
-  }
-  return text;
+  return text + " descriptor=" + nameOf(descriptor);
 }
 
 }  // namespace perennial

@@ -6,6 +6,7 @@
 #include "core/map/map_compaction.h"
 #include "core/map/map_creation.h"
 #include "core/map/map_image.h"
+#include "core/map/map_migration.h"
 #include "core/map/map_opening.h"
 #include "core/map/map_rows.h"
 #include "core/map/map_verify.h"
@@ -37,7 +38,9 @@ struct MapFile::Implementation {
 
   void requireIndex(std::uint32_t index) const;
   void requireTraversal() const;
+  void requireUnmoved() const;
   void lockForWriting() const;
+  static void lockInPresentFormat(std::unique_ptr<Implementation>& map);
   void writeStaged(double end_stamp_s);
   void endTraversal();
 
@@ -60,6 +63,17 @@ void MapFile::Implementation::requireTraversal() const {
   }
 }
 
+/// The name may have been given to another file since this one was opened, by a migration or a compaction.
+void MapFile::Implementation::requireUnmoved() const {
+  int moved = 0;
+  sqlite3_file_control(database.handle(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+  if (moved != 0) {
+    database.execute("ROLLBACK");
+    throw MapError("map '" + database.file() +
+                   "' was replaced or removed after it was opened: open it again");
+  }
+}
+
 void MapFile::Implementation::lockForWriting() const {
   if (database.isReadOnly()) {
     throw MapError("map '" + database.file() +
@@ -78,6 +92,22 @@ void MapFile::Implementation::lockForWriting() const {
     throw;
   }
   database.setPatience(Database::kPatienceMs);
+  requireUnmoved();
+}
+
+/// Leaves the transaction open in which something can be written.
+void MapFile::Implementation::lockInPresentFormat(std::unique_ptr<Implementation>& map) {
+  map->lockForWriting();
+  if (map->stored.format_version == kMapFormatVersion) {
+    return;
+  }
+  const std::string file = map->database.file();
+  {
+    const Transaction nobody_learns(map->database);
+    migrateMap(map->database, map->stored);
+  }
+  map = std::make_unique<Implementation>(file);
+  map->lockForWriting();
 }
 
 void MapFile::Implementation::writeStaged(double end_stamp_s) {
@@ -108,6 +138,7 @@ const std::string& MapFile::file() const { return implementation_->database.file
 const MapMetadata& MapFile::metadata() const { return implementation_->stored.metadata; }
 const PathProfile& MapFile::profile() const { return implementation_->profile; }
 std::size_t MapFile::size() const { return implementation_->stored.local_maps; }
+std::uint32_t MapFile::formatVersion() const { return implementation_->stored.format_version; }
 
 LocalMap MapFile::read(std::uint32_t index) const {
   implementation_->requireIndex(index);
@@ -187,7 +218,7 @@ std::uint32_t MapFile::beginTraversal(const std::string& strategy, double start_
     throw MapError("map '" + file() + "': the stamp of the traversal is not a valid number");
   }
   Staging staging(file());
-  implementation_->lockForWriting();
+  Implementation::lockInPresentFormat(implementation_);
   const std::uint32_t id = newestTraversal(implementation_->database) + 1;
   implementation_->open.emplace(
       OpenTraversal{{id, strategy, start_stamp_s, start_stamp_s, 0}, std::move(staging)});
@@ -251,11 +282,11 @@ MapSizes MapFile::sizes() const {
 }
 
 void MapFile::rollback(std::uint32_t traversal) {
-  const Database& database = implementation_->database;
   if (implementation_->open) {
     throw MapError("map '" + file() + "': a traversal is open; commit or discard it before rolling back");
   }
-  implementation_->lockForWriting();
+  Implementation::lockInPresentFormat(implementation_);
+  const Database& database = implementation_->database;
   Transaction transaction(database);
   const std::uint32_t newest = newestTraversal(database);
   if (traversal > newest) {
@@ -274,15 +305,17 @@ void MapFile::compact(std::uint32_t keep) {
     throw MapError("map '" + file() + "': a traversal is open; commit or discard it before compacting");
   }
   const std::string file = this->file();
-  implementation_->lockForWriting();
-  PartialFile partial(file);
+  Implementation::lockInPresentFormat(implementation_);
   {
     const Transaction nobody_learns(implementation_->database);
-    const Database target = createMap(partial);
-    copyCompacted(implementation_->database, implementation_->stored, keep, target);
-    completeMap(target);
+    PartialFile copy(file, PartialFile::Content::kCopy);
+    {
+      const Database target = createMap(copy);
+      copyCompacted(implementation_->database, implementation_->stored, keep, target);
+      completeMap(target);
+    }
+    copy.replaceLocked();
   }
-  partial.publish(true);
   implementation_ = std::make_unique<Implementation>(file);
 }
 

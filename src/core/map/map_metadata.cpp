@@ -68,6 +68,12 @@ double countOf(const Values& values, const std::string& key, double maximum, con
   return count;
 }
 
+/// In format 1 the descriptor was named unless it compared intensities, the only kind there was at first.
+std::string namingTheDescriptor(const std::string& extraction) {
+  const bool named = extraction.find(" descriptor=") != std::string::npos;
+  return named || extraction.empty() ? extraction : extraction + " descriptor=intensity";
+}
+
 }  // namespace
 
 std::string metadataProblem(const MapMetadata& metadata) {
@@ -111,12 +117,16 @@ StoredMetadata readMetadata(const Database& database) {
   const std::string& file = database.file();
   const Values values = readValues(database);
   StoredMetadata stored;
+  stored.format_version = static_cast<std::uint32_t>(database.integer("PRAGMA user_version"));
   stored.metadata.name = valueOf(values.texts, "name", file);
   stored.metadata.camera = valueOf(values.texts, "camera", file);
   stored.metadata.image_width = static_cast<int>(countOf(values, "image_width", kMaxImageSide, file));
   stored.metadata.image_height = static_cast<int>(countOf(values, "image_height", kMaxImageSide, file));
   stored.metadata.image_encoding = valueOf(values.texts, "image_encoding", file);
   stored.metadata.extraction = valueOf(values.texts, "extraction", file);
+  if (stored.format_version == 1) {
+    stored.metadata.extraction = namingTheDescriptor(stored.metadata.extraction);
+  }
   stored.metadata.map_interval_m = valueOf(values.numbers, "map_interval_m", file);
   stored.metadata.taught_stamp_s = valueOf(values.numbers, "taught_stamp_s", file);
   stored.metadata.length_m = valueOf(values.numbers, "length_m", file);

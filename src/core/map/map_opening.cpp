@@ -57,7 +57,7 @@ void checkHeader(const std::string& file, const Header& header) {
                    "' is an unfinished map, left behind when teaching was interrupted. It holds no whole "
                    "path: remove it and teach the path again");
   }
-  if (header.version > static_cast<std::uint32_t>(kMapFormatVersion)) {
+  if (header.version > kMapFormatVersion) {
     throw MapError("map '" + file + "' has format version " + std::to_string(header.version) +
                    "; this program knows versions up to " + std::to_string(kMapFormatVersion) +
                    ". Use the newer program that wrote it");

@@ -6,8 +6,8 @@
 
 namespace perennial {
 
-/// Opens a map file and makes sure that it is one: exists, is finished, of this format version, with intact
-/// header and tables. Each refusal says what is wrong and what to do. Throws MapError.
+/// Opens a map file and makes sure that it is one: exists, is finished, of this format version or an older
+/// one, with intact header and tables. Each refusal says what is wrong and what to do. Throws MapError.
 Database openMapDatabase(const std::string& file);
 
 }  // namespace perennial

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/map/local_map_codec.h"
+#include "core/map/map_schema.h"
 #include "core/map/sqlite.h"
 #include "perennial/core/map_file.h"
 
@@ -16,16 +17,19 @@ namespace perennial {
 
 [[noreturn]] void throwDamaged(const std::string& file, const std::string& what);
 
-/// Metadata with the counts that make missing rows noticed.
+/// Metadata with the counts that make missing rows noticed. Read from an older format it says what the
+/// present one would: the extraction names its descriptor.
 struct StoredMetadata {
   MapMetadata metadata;
   std::size_t local_maps = 0;
   std::size_t profile_entries = 0;
+  std::uint32_t format_version = kMapFormatVersion;  ///< of the file
 };
 
 /// Empty, or which member of the metadata is not usable.
 std::string metadataProblem(const MapMetadata& metadata);
 
+/// In the present format, whatever the one was that it was read from.
 void writeMetadata(const Database& database, const StoredMetadata& stored);
 StoredMetadata readMetadata(const Database& database);
 

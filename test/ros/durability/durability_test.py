@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Maps in hard times, with the real nodes: a second manager, a full disk."""
+"""Maps in hard times, with the real nodes: a second manager, a full disk, a map of an older format."""
 import os
 import shutil
 import sys
@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from perennial_nav.srv import BeginTraversal, EndTraversal
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from stack import MapContent, Node, Stack, verify, wait_until  # noqa: E402
+from stack import MapContent, Node, Stack, make_format_1, verify, wait_until  # noqa: E402
 
 FOLDER, PRELOAD = "", ""
 MIDDLE = 20  # steps
@@ -96,6 +96,31 @@ class Durability(unittest.TestCase):
 
     def test_the_robot_goes_on_when_the_disk_gets_full(self):
         self.repeats_without_learning(full_from=MIDDLE)
+
+    def test_a_map_of_format_1_is_repeated_as_it_is_until_there_is_room_to_migrate_it(self):
+        make_format_1(self.file)
+        with open(self.file, "rb") as file:
+            original = file.read()
+        before = self.content()
+        self.fill_disk()
+        self.problems.clear()
+        result = self.stack.repeat_path("path")
+        self.assertTrue(result.success, result.reason)
+        wait_until(lambda: self.stack.tick() and any("format version 1" in problem and "space" in problem
+                                                     for problem in self.problems), "diagnostics that say it")
+        with open(self.file, "rb") as file:
+            self.assertEqual(file.read(), original)
+        self.empty_disk()
+        result = self.stack.repeat_path("path")
+        self.assertTrue(result.success, result.reason)
+        after = self.content()
+        self.assertEqual(after.version, 2)
+        self.assertEqual(after.newest(), before.newest() + 1)
+        self.assertEqual(after.upto(before.newest()), before.upto(before.newest()))
+        with open(self.file + ".format1", "rb") as file:
+            self.assertEqual(file.read(), original)
+        self.assertEqual(sorted(os.listdir(os.path.dirname(self.file))), ["path.perennial", "path.perennial.format1"])
+        os.remove(self.file + ".format1")
 
     def test_teaching_on_a_full_disk_leaves_the_old_map(self):
         before = self.content()

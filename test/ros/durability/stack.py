@@ -3,9 +3,11 @@ import hashlib
 import os
 import signal
 import sqlite3
+import struct
 import subprocess
 import sys
 import time
+import zlib
 
 import actionlib
 import roslib.packages
@@ -54,6 +56,7 @@ class MapContent:
         with sqlite3.connect("file:%s?mode=ro" % file, uri=True) as database:
             self.traversals = database.execute("SELECT traversal, updated_maps FROM traversal ORDER BY 1").fetchall()
             self.states = database.execute("SELECT local_map, traversal, crc FROM state ORDER BY 2, 1").fetchall()
+            self.version = database.execute("PRAGMA user_version").fetchone()[0]
             self.places = database.execute("SELECT count(*) FROM local_map").fetchone()[0]
         database.close()
 
@@ -72,6 +75,15 @@ class MapContent:
         for _, traversal, _ in self.states:
             counts[traversal] = counts.get(traversal, 0) + 1
         return counts == dict(self.traversals) and counts[0] == self.places
+
+
+def make_format_1(file):
+    """A map as the last program of format version 1 wrote it: of a default teaching, only the version differs."""
+    with open(file, "r+b") as stream:
+        page = bytearray(stream.read(4092))
+        page[60:64] = struct.pack(">I", 1)
+        stream.seek(0)
+        stream.write(page + struct.pack("<I", zlib.crc32(struct.pack("<I", 1) + page)))
 
 
 def verify(file):
