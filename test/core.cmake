@@ -1,6 +1,7 @@
 # Unit tests of the core.
 
 # --- small parts ---
+perennial_gtest(note_limit_test core/note_limit_test.cpp)
 perennial_gtest(parameter_reader_test core/parameter_reader_test.cpp)
 perennial_gtest(restart_watch_test core/restart_watch_test.cpp)
 perennial_gtest(utc_time_test core/utc_time_test.cpp)

@@ -44,10 +44,14 @@ CsvTable CsvTable::load(const std::string& file) {
   if (!stream) {
     throw DatasetError(file + ": cannot be opened; is it there and readable?");
   }
+  return parse(stream, file);
+}
+
+CsvTable CsvTable::parse(std::istream& content, const std::string& file) {
   CsvTable table;
   table.file_ = file;
   std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+  for (std::size_t number = 1; std::getline(content, line); ++number) {
     if (number == 1) {
       removeByteOrderMark(line);
     }

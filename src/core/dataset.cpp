@@ -7,13 +7,14 @@
 #include <sstream>
 #include <tuple>
 
-#include "perennial/core/csv.h"
 #include "perennial/core/error.h"
 #include "perennial/core/reference_map.h"
 #include "perennial/core/utc_time.h"
 
 namespace perennial {
 namespace {
+
+constexpr double kLongestPath_m = 1e6;  // a track has a sample every few centimetres
 
 DatasetRow parseRow(const CsvTable& table, const CsvRow& row, const std::string& folder) {
   DatasetRow result;
@@ -31,6 +32,9 @@ DatasetRow parseRow(const CsvTable& table, const CsvRow& row, const std::string&
   result.distance_m = table.number(row, "distance_m");
   if (result.distance_m < 0.0) {
     table.fail(row, "the distance is negative");
+  }
+  if (result.distance_m > kLongestPath_m) {
+    table.fail(row, "the distance is more than 1000 km; is it in metres?");
   }
   if (table.text(row, "image").empty()) {
     table.fail(row, "no image is named");
@@ -136,12 +140,16 @@ void sortAndCheck(Dataset& dataset) {
 }
 
 Dataset loadDataset(const std::string& folder) {
-  Dataset dataset;
-  dataset.manifest = folder + "/manifest.csv";
-  if (!std::filesystem::exists(dataset.manifest) && !listReferenceMaps(folder).empty()) {
+  const std::string manifest = folder + "/manifest.csv";
+  if (!std::filesystem::exists(manifest) && !listReferenceMaps(folder).empty()) {
     return loadReferenceDataset(folder);
   }
-  const CsvTable table = CsvTable::load(dataset.manifest);
+  return datasetOf(CsvTable::load(manifest), folder);
+}
+
+Dataset datasetOf(const CsvTable& table, const std::string& folder) {
+  Dataset dataset;
+  dataset.manifest = table.file();
   for (const CsvRow& row : table.rows()) {
     dataset.rows.push_back(parseRow(table, row, folder));
   }

@@ -205,7 +205,11 @@ ReferenceLocalMap decodeReferenceMap(const std::string& content, const std::stri
 std::optional<double> readReferenceTime(const std::string& file) { return timeIn(contentOf(file), file); }
 
 PathProfile readReferenceProfile(const std::string& file) {
-  const auto numbers = parsed(contentOf(file), file, [](const cv::FileStorage& storage) {
+  return decodeReferenceProfile(contentOf(file), file);
+}
+
+PathProfile decodeReferenceProfile(const std::string& content, const std::string& file) {
+  const auto numbers = parsed(content, file, [](const cv::FileStorage& storage) {
     std::vector<double> path;  // the text's numbers, not the nearest floats
     storage["Path"] >> path;
     return path;

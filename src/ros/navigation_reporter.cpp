@@ -1,8 +1,9 @@
 #include "perennial/ros/navigation_reporter.h"
 
 #include <cv_bridge/cv_bridge.h>
-#include <opencv2/imgcodecs.hpp>
 #include <sensor_msgs/image_encodings.h>
+
+#include <opencv2/imgcodecs.hpp>
 
 #include "perennial/core/matches_picture.h"
 #include "perennial/ros/conversions.h"
@@ -12,6 +13,7 @@ namespace perennial {
 namespace {
 
 constexpr char kNode[] = "repeat_navigator";
+constexpr int kMostLines = 3;  // in the log, of each state in each traversal
 
 }  // namespace
 
@@ -20,7 +22,8 @@ NavigationReporter::NavigationReporter(ros::NodeHandle nh, ros::NodeHandle priva
       state_publisher_(nh.advertise<perennial_nav::NavigationState>("navigation_state", 100, true)),
       processed_publisher_(nh.advertise<perennial_nav::Processed>("processed", 100)),
       matches_publisher_(transport_.advertise("matches", 1)),
-      diagnostics_(nh, private_nh) {
+      diagnostics_(nh, private_nh),
+      log_(kMostLines) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("navigation", [this](auto& status) { diagnose(status); });
 }
@@ -29,8 +32,11 @@ void NavigationReporter::state(const ros::Time& stamp, const NavigationStatus& s
                                const geometry_msgs::Twist& command, const RepeatRun* run,
                                const NavigationStep* step) {
   const std::string mode = nameOf(status.mode);
+  if (state_.traversal != (run != nullptr ? run->number : 0)) {
+    log_.begin();
+  }
   if (mode != state_.state) {
-    ROS_INFO("%s: %s", mode.c_str(), status.reason.c_str());
+    log(mode, status.reason);
   }
   state_ = {};
   state_.header.stamp = stamp;
@@ -51,6 +57,15 @@ void NavigationReporter::state(const ros::Time& stamp, const NavigationStatus& s
     state_.inliers = result.inliers;
   }
   state_publisher_.publish(state_);
+}
+
+void NavigationReporter::log(const std::string& mode, const std::string& reason) {
+  const NoteLimit::Verdict verdict = log_.note(mode);
+  if (verdict != NoteLimit::Verdict::kKeepQuiet) {
+    const bool last = verdict == NoteLimit::Verdict::kSayForTheLastTime;
+    ROS_INFO("%s: %s%s", mode.c_str(), reason.c_str(),
+             last ? " (navigation_state says it from now on in this traversal, not the log)" : "");
+  }
 }
 
 void NavigationReporter::matches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image,

@@ -85,6 +85,7 @@ TEST_F(DatasetTest, errorsNameFileAndLine) {
   expectError(good + "b,2012-01-15,0,a0.png,5\n", 3, "2012-01-15");
   expectError(good + "b,2012-01-15T12:00:00Z,near,a0.png,5\n", 3, "distance_m");
   expectError(good + "b,2012-01-15T12:00:00Z,-1,a0.png,5\n", 3, "negative");
+  expectError(good + "b,2012-01-15T12:00:00Z,1e7,a0.png,5\n", 3, "more than 1000 km");
   expectError(good + "b,2012-01-15T12:00:00Z,0,a0.png,nan\n", 3, "offset_px");
   expectError(good + "b,2012-01-15T12:00:00Z,0,,5\n", 3, "image");
   expectError(good + ",2012-01-15T12:00:00Z,0,a0.png,5\n", 3, "name");

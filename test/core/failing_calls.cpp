@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -110,6 +111,15 @@ int link(const char* from, const char* to) noexcept {
     return -1;
   }
   return goesOn() ? call(from, to) : -1;
+}
+
+int statvfs(const char* path, struct statvfs* result) noexcept {
+  static const auto call = original<int (*)(const char*, struct statvfs*)>("statvfs");
+  const int status = call(path, result);
+  if (armed && manner == FailingCalls::How::kNoRoom) {
+    result->f_bavail = 0;
+  }
+  return status;
 }
 
 int rename(const char* from, const char* to) noexcept {

@@ -13,6 +13,7 @@ class FailingCalls {
     kFail,     ///< this call fails as on a full disk
     kDie,      ///< the process ends at once, as by kill -9, before this call
     kCorrupt,  ///< writes another byte somewhere in the middle, says nothing, and goes on
+    kNoRoom,   ///< every file system has no room left, by its own account; no number counts
     kNoLinks,  ///< every link() fails, as on a file system without hard links; no number counts
   };
   static void arm(How how, std::size_t call);

@@ -30,6 +30,10 @@ constexpr int kWidth = 320;
 constexpr int kHeight = 200;
 constexpr int kPlaces = 11;
 constexpr double kStep_m = 0.1;
+constexpr int kKept = 10;
+constexpr double kMostPerTraversal_mb = 0.05;  // twice what was measured
+/// All places with all of their 300 features, and a number each.
+constexpr double kWholeState_mb = kPlaces * 300 * 68 / 1e6;
 
 cv::Mat viewAt(int left_px) {
   cv::Mat noise(kHeight, kWidth + 100, CV_8UC1);
@@ -67,6 +71,7 @@ class LongRun : public ::testing::Test {
   }
 
   std::string file() const { return folder_ / "loop.perennial"; }
+  double mapMegabytes() const { return static_cast<double>(std::filesystem::file_size(file())) / 1e6; }
 
   /// One traversal through everything that a robot runs; the odometer and the session go on from the one
   /// before.
@@ -114,6 +119,7 @@ TEST_F(LongRun, nothingDrifts) {
   MapManager manager(MapFile(file()), std::make_shared<strategies::ScoreBased>());
   RepeatSession session(manager.file().metadata(), manager.file().profile(), manager.file().size(), settings);
   const int part = traversals / 5;
+  const double taught_mb = mapMegabytes();
   std::vector<double> memory_mb, seconds, map_mb;
   for (int number = 0; number < 5 * part; ++number) {
     const double begin_s = processorSeconds();
@@ -124,13 +130,21 @@ TEST_F(LongRun, nothingDrifts) {
     seconds.back() += processorSeconds() - begin_s;
     if (number % part == part - 1) {
       memory_mb.push_back(residentMegabytes());
-      map_mb.push_back(static_cast<double>(std::filesystem::file_size(file())) / 1e6);
+      map_mb.push_back(mapMegabytes());
       std::printf("%6d traversals: %.1f MB of memory, %.2f ms a traversal, map %.2f MB\n", number + 1,
                   memory_mb.back(), 1000.0 * seconds.back() / part, map_mb.back());
     }
   }
   EXPECT_LT(memory_mb.back() - memory_mb.front(), 10.0) << "memory must not grow with the traversals";
   EXPECT_LT(seconds.back(), 3.0 * seconds.front()) << "nor the time";
+  const double first_part_mb = map_mb[1] - map_mb[0];
+  const double last_part_mb = map_mb[4] - map_mb[3];
+  EXPECT_LT(last_part_mb, 1.2 * first_part_mb + 0.1) << "nor what a traversal adds to the map";
+  EXPECT_LT((map_mb[4] - taught_mb) / (5 * part), kMostPerTraversal_mb);
+  MapFile(file()).compact(kKept);
+  std::printf("%6d traversals kept after compaction: map %.2f MB\n", kKept, mapMegabytes());
+  EXPECT_LT(mapMegabytes(), taught_mb + kWholeState_mb + kKept * kMostPerTraversal_mb)
+      << "as taught, one state for all that was merged, and those that are kept";
 }
 
 }  // namespace

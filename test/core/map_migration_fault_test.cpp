@@ -97,6 +97,19 @@ TEST_F(MapMigrationFaultTest, aFullDiskHarmsNothingAndSaysWhatToDo) {
   EXPECT_GE(failures, 9U) << "as many as the map has pages";
 }
 
+TEST_F(MapMigrationFaultTest, whereThereIsNoRoomNothingIsWritten) {
+  copyPristine();
+  FailingCalls::arm(How::kNoRoom, 0);
+  const std::string error = errorOfMigration();
+  const std::size_t calls = FailingCalls::calls();
+  FailingCalls::disarm();
+  EXPECT_NE(error.find("needs 1 MB"), std::string::npos) << error;
+  EXPECT_NE(error.find("free some space"), std::string::npos) << error;
+  EXPECT_EQ(calls, 0U);
+  EXPECT_EQ(disk_.events(), 0U);
+  expectUntouched("no room");
+}
+
 TEST_F(MapMigrationFaultTest, powerLossLeavesTheOldMap) {
   std::size_t losses = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

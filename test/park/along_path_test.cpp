@@ -1,11 +1,11 @@
 // What the along-path correction is worth when the odometry is wrong. PERENNIAL_ALONG_PATH_TABLE=1 measures
 // the whole table of docs/navigation.md; without it one row is tested.
+#include <gtest/gtest.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "park/closed_loop.h"
 #include "perennial/core/feature_extractor.h"
@@ -72,7 +72,8 @@ TEST_F(AlongPath, correctsAnOdometryThatIsWrong) {
   }
   for (const OdometryFault& fault :
        {OdometryFault{0.0, 0.0}, OdometryFault{0.02, 0.0}, OdometryFault{0.05, 0.0}, OdometryFault{0.10, 0.0},
-        OdometryFault{0.0, 0.1}, OdometryFault{0.05, 0.1}}) {
+        OdometryFault{0.0, 0.1}, OdometryFault{0.02, 0.1}, OdometryFault{0.05, 0.1},
+        OdometryFault{0.10, 0.1}}) {
     const double without = rms(loop(fault, false));
     const double with = rms(loop(fault, true));
     EXPECT_LE(with, without + 0.01) << "the correction must never be worse";

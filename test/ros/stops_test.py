@@ -11,6 +11,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from perennial_nav.msg import NavigationState
+from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Joy, LaserScan, Range
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
@@ -73,11 +74,18 @@ class Stops(unittest.TestCase):
         cls.by_hand = rospy.Publisher("/teleop_vel", Twist, queue_size=10)
         wait_until(lambda: cls.stop_topic.get_num_connections() > 0, "the emergency stop's subscriber")
         wait_until(lambda: cls.by_hand.get_num_connections() > 0, "the subscriber of commands by hand")
+        cls.lines = []
+        rospy.Subscriber("/rosout", Log, cls.on_log, queue_size=1000)
         rospy.wait_for_service("/e_stop")
         cls.stop_service = rospy.ServiceProxy("/e_stop", SetBool)
         cls.resume = rospy.ServiceProxy("/resume", Trigger)
         result = cls.stack.teach_path("path")
         assert result.success, result.message
+
+    @classmethod
+    def on_log(cls, message):
+        if message.name in ("/repeat_navigator", "/map_manager") and message.level >= Log.INFO:
+            cls.lines.append(message.msg)
 
     def setUp(self):
         """A repeat of the path, in its middle."""
@@ -290,6 +298,38 @@ class Stops(unittest.TestCase):
             if self.stack.done(self.stack.repeat):
                 break
         self.assert_fails("not recognised")
+
+    def lines_of(self, traversals, after_step=lambda i: None):
+        """Drives so many traversals; returns how many lines the nodes log meanwhile, and what the states were."""
+        self.stack.end(self.stack.repeat)
+        self.stack.begin_repeat("path", traversals=traversals)
+        self.robot.loop_m = LENGTH_M
+        del self.lines[:]
+        states = []
+        for i in range(1000 * traversals):
+            if self.stack.done(self.stack.repeat):
+                break
+            self.robot.step(BOTH)
+            after_step(i)
+            states.append(self.stack.states[-1].state)
+        result = self.stack.result(self.stack.repeat)
+        self.assertTrue(result.success, result.reason)
+        done = "traversal %d of 'path' done" % traversals
+        wait_until(lambda: any(done in line for line in self.lines), "the log of the last traversal")
+        return list(self.lines), states
+
+    def test_the_log_grows_with_traversals_not_with_images(self):
+        once, _ = self.lines_of(1)
+        thrice, _ = self.lines_of(3)
+        self.assertLessEqual(len(thrice) - len(once), 2, thrice)
+
+        def cover(i):
+            self.robot.image_changes = {} if i % 5 else {"data": bytes([50 + i % 100]) * (WIDTH * HEIGHT)}
+
+        lines, states = self.lines_of(2, cover)
+        changes = sum(a != b for a, b in zip(states, states[1:]))
+        self.assertGreater(changes, 60, "seen and not seen in turns")
+        self.assertLessEqual(len(lines), 20, lines)
 
     def test_frozen_camera(self):
         self.robot.frozen = True

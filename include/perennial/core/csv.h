@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <istream>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ class CsvTable {
   /// Throws DatasetError, naming file and line: no such file, no header, a column named twice, a row with
   /// another number of fields than the header, an unfinished quote.
   static CsvTable load(const std::string& file);
+  /// The same from the content of the file, which is named in messages.
+  static CsvTable parse(std::istream& content, const std::string& file);
 
   const std::string& file() const { return file_; }
   const std::vector<CsvRow>& rows() const { return rows_; }

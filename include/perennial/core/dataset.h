@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "perennial/core/csv.h"
+
 namespace perennial {
 
 /// One image of a data set: what a traversal saw at a place.
@@ -57,12 +59,15 @@ void sortAndCheck(Dataset& dataset);
 
 /// Reads `folder`/manifest.csv with the columns traversal, stamp (ISO 8601, UTC), distance_m, image (relative
 /// to the folder), offset_px, in any order; others are ignored. Throws DatasetError naming file and line for:
-/// a missing column or file, a field that is no number or time, a negative distance, a place listed twice in
+/// a missing column or file, a field that is no number or time, a distance that is negative or beyond 1000 km, a place listed twice in
 /// a traversal, time that goes backwards within a place, no rows. Images are not opened.
 ///
 /// A folder without a manifest may hold maps of the reference system (reference_map.h), see
 /// loadReferenceDataset().
 Dataset loadDataset(const std::string& folder);
+
+/// The same from the manifest of `folder`, which has been read already.
+Dataset datasetOf(const CsvTable& manifest, const std::string& folder);
 
 /// Map folders of the reference system as a data set: each map is a traversal, local maps of the same rank
 /// belong to the same place, at the distance that the first traversal has for it. Where the files have a

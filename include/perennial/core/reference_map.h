@@ -46,6 +46,8 @@ std::optional<double> readReferenceTime(const std::string& file);
 
 /// The path profile. Refused: no `Path`, a length that is no multiple of 4, distances that fall.
 PathProfile readReferenceProfile(const std::string& file);
+/// The same from the content of the file, which is named in messages.
+PathProfile decodeReferenceProfile(const std::string& content, const std::string& file);
 
 /// Ground truth, one for each local map in order of distance: the first of the two integers of each line. The
 /// scene lies by this much further LEFT in the image, so that the displacement x_map - x_view is that of the

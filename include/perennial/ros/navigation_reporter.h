@@ -8,6 +8,7 @@
 #include <ros/ros.h>
 
 #include "perennial/core/navigation_supervisor.h"
+#include "perennial/core/note_limit.h"
 #include "perennial/core/repeat_session.h"
 #include "perennial/ros/repeat_run.h"
 #include "perennial_nav/NavigationState.h"
@@ -15,7 +16,8 @@
 namespace perennial {
 
 /// What the navigator tells others beside the registrations: navigation_state (latched), matches (drawn only
-/// while somebody subscribes), processed, diagnostics.
+/// while somebody subscribes), processed, diagnostics; and, in the log, changes of the state: of each state the
+/// first few in a traversal, so that the log is bounded by the traversals, not by the images.
 class NavigationReporter {
  public:
   NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh);
@@ -31,6 +33,7 @@ class NavigationReporter {
   void update(std::size_t dropped_images, std::size_t ignored_maps, bool has_camera_info);
 
  private:
+  void log(const std::string& mode, const std::string& reason);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   image_transport::ImageTransport transport_;
@@ -39,6 +42,7 @@ class NavigationReporter {
   image_transport::Publisher matches_publisher_;
   diagnostic_updater::Updater diagnostics_;
   perennial_nav::NavigationState state_;
+  NoteLimit log_;
   std::size_t dropped_images_ = 0;
   std::size_t ignored_maps_ = 0;
   bool has_camera_info_ = false;

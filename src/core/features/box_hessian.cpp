@@ -42,9 +42,10 @@ struct Response {
 }  // namespace
 
 void ColumnDifferences::resize(std::size_t columns) {
-  xx.resize(columns);
-  yy.resize(columns);
-  xy.resize(columns);
+  const std::size_t size = wholeLines<std::uint32_t>(columns);
+  xx.resize(size);
+  yy.resize(size);
+  xy.resize(size);
 }
 
 FilterRows::FilterRows(const IntegralImage& integral, const BoxFilter& filter, int y) {
@@ -118,6 +119,12 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
     computed += may_reach ? 1 : 0;
   }
   return computed;
+}
+
+void everyOther(const float* from, int count, float* to) noexcept {
+  for (int i = 0; i < count; ++i) {
+    to[i] = from[2 * i];
+  }
 }
 
 float hessianAt(const IntegralImage& integral, const BoxFilter& filter, int x, int y) noexcept {

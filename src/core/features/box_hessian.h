@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "core/features/integral_image.h"
+#include "core/simd/aligned_vector.h"
 
 namespace perennial {
 
@@ -36,9 +36,9 @@ constexpr float scaleOfFilterSize(float size) { return 1.2F / 9.0F * size; }
 /// Differences down the columns of an integral image, for one filter and one image row. Each derivative is
 /// then a few differences along the row: 20 reads for a response instead of 32.
 struct ColumnDifferences {
-  std::vector<std::uint32_t> xx;
-  std::vector<std::uint32_t> yy;
-  std::vector<std::uint32_t> xy;
+  AlignedVector<std::uint32_t> xx;
+  AlignedVector<std::uint32_t> yy;
+  AlignedVector<std::uint32_t> xy;
 
   void resize(std::size_t columns);
 };
@@ -52,12 +52,15 @@ struct FilterRows {
   const std::uint32_t* xy[4];  ///< above and below the upper squares of Dxy, then the lower ones
 };
 
-/// Fills columns begin..end-1 of `differences`.
+/// Fills columns begin..end-1 of `differences`, and perhaps others in the same lines.
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) noexcept;
 
 /// The same without `xy`.
 void differenceColumnsXxYy(const FilterRows& rows, int begin, int end,
                            ColumnDifferences& differences) noexcept;
+
+/// Whole vectors may be read so far behind the end of a row of responses.
+constexpr int kReadBeyond = 64;
 
 /// Stands for a response that was not computed because it cannot reach the threshold: less than every
 /// threshold.
@@ -75,6 +78,9 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
 /// open. Returns how many were computed.
 int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
                     int begin, int count, float threshold, float* responses) noexcept;
+
+/// to[i] = from[2 i], for `count` of them; `to` may be `from`. from[2 count - 1] may be read.
+void everyOther(const float* from, int count, float* to) noexcept;
 
 /// One response: that of hessianRow() at pixel (x, y), where the filter must lie within the image.
 float hessianAt(const IntegralImage& integral, const BoxFilter& filter, int x, int y) noexcept;

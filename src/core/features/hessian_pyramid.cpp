@@ -1,6 +1,7 @@
 #include "core/features/hessian_pyramid.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/simd/kernels.h"
 
@@ -22,9 +23,10 @@ void fitLayer(int image_columns, int image_rows, int rows_held, ResponseLayer& l
   layer.begin = samples(half, layer.step);
   layer.columns_end = samples(image_columns - half, layer.step);
   layer.rows_end = samples(image_rows - half, layer.step);
-  layer.rows_held = std::max(1, std::min(rows_held, layer.rows));
-  const auto size = static_cast<std::size_t>(layer.columns) * static_cast<std::size_t>(layer.rows_held);
-  layer.responses.assign(size, 0.0F);
+  layer.row_mask = rows_held < layer.rows ? rows_held - 1 : std::numeric_limits<int>::max();
+  const auto held = static_cast<std::size_t>(std::min(rows_held, layer.rows));
+  const auto size = static_cast<std::size_t>(layer.columns) * held;
+  layer.responses.assign(size + kReadBeyond, 0.0F);
 }
 
 /// Takes every other sample of row 2 j of the same filter's responses in the octave below.
@@ -32,11 +34,8 @@ void subsampleRow(const ResponseLayer& finer, int j, ResponseLayer& coarser) {
   if (j < coarser.begin || j >= coarser.rows_end) {
     return;
   }
-  const float* const from = finer.row(2 * j);
-  float* const to = coarser.row(j);
-  for (int i = coarser.begin; i < coarser.columns_end; ++i) {
-    to[i] = from[2 * i];
-  }
+  kernels().every_other(finer.row(2 * j) + 2 * coarser.begin, coarser.columns_end - coarser.begin,
+                        coarser.row(j) + coarser.begin);
 }
 
 }  // namespace
@@ -101,7 +100,7 @@ void HessianPyramid::fit(const IntegralImage& integral, int rows_held) {
     fitLayer(columns_, rows_, layer.step == 1 ? rows_held : rows_, layer);
   }
   differences_.resize(static_cast<std::size_t>(columns_) + 1);
-  full_row_.resize(static_cast<std::size_t>(columns_));
+  full_row_.resize(static_cast<std::size_t>(columns_) + 1);
 }
 
 void HessianPyramid::filterRow(const IntegralImage& integral, ResponseLayer& layer, int j) {
@@ -116,11 +115,16 @@ void HessianPyramid::filterRow(const IntegralImage& integral, ResponseLayer& lay
     filterPixels(integral, layer, j, first_x, count, responses);
     return;
   }
-  // Every pixel, then every step-th: vector code does a whole row faster than scalar code its samples.
-  filterPixels(integral, layer, j * layer.step, first_x, last_x - first_x + 1, full_row_.data());
-  for (int i = 0; i < count; ++i) {
-    responses[i] = full_row_[static_cast<std::size_t>(i * layer.step)];
+  // Every pixel, then every other one of them, and so on: vector code does a whole row faster than scalar
+  // code its samples.
+  int left = last_x - first_x + 1;
+  filterPixels(integral, layer, j * layer.step, first_x, left, full_row_.data());
+  const auto every_other = kernels().every_other;
+  for (int step = layer.step; step > 2; step /= 2) {
+    left = samples(left, 2);
+    every_other(full_row_.data(), left, full_row_.data());
   }
+  every_other(full_row_.data(), count, responses);
 }
 
 void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x,

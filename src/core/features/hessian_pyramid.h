@@ -21,17 +21,18 @@ struct ResponseLayer {
   int rows_end = 0;
   int dense_rows =
       0;  ///< rows to come in which every response is computed, because most were in the row before
-  int rows_held =
-      0;  ///< the newest rows that are in memory: all, or a few where maxima are sought on the way
+  /// Row j is in memory at place j & row_mask: all rows, or the newest few where maxima are sought on the
+  /// way.
+  int row_mask = 0;
   std::vector<float> responses;
 
   /// Row j, which must be among those held.
-  const float* row(int j) const { return responses.data() + offset(j); }
-  float* row(int j) { return responses.data() + offset(j); }
+  const float* row(int j) const { return responses.data() + place(j); }
+  float* row(int j) { return responses.data() + place(j); }
 
  private:
-  std::size_t offset(int j) const {
-    return static_cast<std::size_t>(j % rows_held) * static_cast<std::size_t>(columns);
+  std::size_t place(int j) const {
+    return static_cast<std::size_t>(j & row_mask) * static_cast<std::size_t>(columns);
   }
 };
 
@@ -84,7 +85,7 @@ class HessianPyramid {
   const ResponseLayer& layer(int octave, int index) const { return pyramid_[position(octave, index)]; }
 
  private:
-  static constexpr int kRowsStreamed = 4;
+  static constexpr int kRowsStreamed = 4;  ///< a power of two
 
   std::size_t position(int octave, int index) const {
     return static_cast<std::size_t>(octave * layersPerOctave() + index);
@@ -107,7 +108,7 @@ class HessianPyramid {
 
   int octaves_;
   int layers_;
-  int columns_ = 0;  ///< of the image that the layers fit
+  int columns_ = -1;  ///< of the image that the layers fit; none yet
   int rows_ = 0;
   int rows_held_ = 0;
   float threshold_ = kBelowThreshold;  ///< responses below it need not be computed

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/simd/kernels.h"
+
 namespace perennial {
 
 void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns,
@@ -17,12 +19,13 @@ void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int col
 void IntegralImage::compute(const cv::Mat& image) {
   rows_ = image.rows;
   columns_ = image.cols;
-  stride_ = static_cast<std::size_t>(columns_) + 1;
+  stride_ = wholeLines<std::uint32_t>(static_cast<std::size_t>(columns_) + 1);
   sums_.resize(stride_ * (static_cast<std::size_t>(rows_) + 1));
   std::fill_n(sums_.begin(), stride_, 0U);
+  const auto integral_row = kernels().integral_row;
   for (int y = 0; y < rows_; ++y) {
     std::uint32_t* const above = sums_.data() + static_cast<std::size_t>(y) * stride_;
-    integralRow(image.ptr<std::uint8_t>(y), above, columns_, above + stride_);
+    integral_row(image.ptr<std::uint8_t>(y), above, columns_, above + stride_);
   }
 }
 

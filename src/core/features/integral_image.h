@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
+
+#include "core/simd/aligned_vector.h"
 
 namespace perennial {
 
@@ -20,13 +21,14 @@ class IntegralImage {
 
   int rows() const { return rows_; }        ///< of the image
   int columns() const { return columns_; }  ///< of the image
+  /// Begins a line of the cache; the rest of its last line may be read, but means nothing.
   const std::uint32_t* row(int y) const { return sums_.data() + static_cast<std::size_t>(y) * stride_; }
 
  private:
   int rows_ = 0;
   int columns_ = 0;
   std::size_t stride_ = 1;
-  std::vector<std::uint32_t> sums_;
+  AlignedVector<std::uint32_t> sums_;
 };
 
 /// One row of the table: `sums[x + 1] = above[x + 1] + pixels[0] + ... + pixels[x]`, and `sums[0] = 0`.

@@ -19,7 +19,7 @@ struct Maximum {
 
 /// The first of the samples begin..end-1 of a row that reaches the threshold, is not less than its left and
 /// upper neighbours and greater than its right and lower ones: few do, so that most of a row is passed over.
-/// `end` when there is none.
+/// `end` when there is none. Up to kReadBeyond samples behind `end` may be read.
 int nextPeak(const float* up, const float* here, const float* down, int begin, int end,
              float threshold) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "core/map/kept_map.h"
@@ -13,7 +14,24 @@
 namespace perennial {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::uint32_t kAllTraversals = std::numeric_limits<std::uint32_t>::max();
+
+std::string megabytes(std::uintmax_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
+
+/// Before the copy fills the disk, and in no time. Other programs may still take the room meanwhile.
+void requireRoom(const std::string& file) {
+  std::error_code problem;
+  const std::uintmax_t needed = fs::file_size(file, problem);
+  const fs::path folder = fs::absolute(file, problem).parent_path();
+  const fs::space_info space = problem ? fs::space_info{} : fs::space(folder, problem);
+  const bool known = !problem && space.capacity > 0;  // not every file system says
+  if (known && space.available < needed) {
+    throw MapError("it needs " + megabytes(needed) + " in '" + folder.string() + "', of which " +
+                   megabytes(space.available) + " are free: free some space");
+  }
+}
 
 void writeCopy(const Database& source, const StoredMetadata& stored, PartialFile& copy) {
   const Database target = createMap(copy);
@@ -49,6 +67,7 @@ void requireFaithful(const Database& source, const std::string& file) {
 }
 
 void migrate(const Database& source, const StoredMetadata& stored) {
+  requireRoom(source.file());
   PartialFile copy(source.file(), PartialFile::Content::kCopy);
   writeCopy(source, stored, copy);
   requireFaithful(source, copy.path());

@@ -19,4 +19,14 @@ void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table
   }
 }
 
+SmallestTwo smallestTwo(const std::uint16_t* distances, std::size_t count) noexcept {
+  SmallestTwo smallest;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (distances[i] < smallest.second) {  // seldom
+      smallest.offer(distances[i]);
+    }
+  }
+  return smallest;
+}
+
 }  // namespace perennial

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,5 +36,20 @@ class DescriptorTable {
 /// distances[j - begin] = Hamming distance to the j-th descriptor of the table, for j = begin..end-1.
 void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                       std::size_t end, std::uint16_t* distances) noexcept;
+
+/// The two smallest of many distances, which may be equal.
+struct SmallestTwo {
+  static constexpr std::uint16_t kNone = 0xFFFF;  ///< where there are not so many
+
+  std::uint16_t first = kNone;
+  std::uint16_t second = kNone;
+
+  void offer(std::uint16_t distance) {
+    second = std::min(second, std::max(first, distance));
+    first = std::min(first, distance);
+  }
+};
+
+SmallestTwo smallestTwo(const std::uint16_t* distances, std::size_t count) noexcept;
 
 }  // namespace perennial

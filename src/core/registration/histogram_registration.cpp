@@ -19,21 +19,13 @@ namespace {
 /// Index of the nearest descriptor if it passes the ratio test against all others, otherwise -1; of equally
 /// near ones the first.
 std::int32_t findPartner(const std::vector<std::uint16_t>& distances, double ratio) {
-  int nearest = Descriptor::kBits + 1;
-  int second = Descriptor::kBits + 1;
-  std::int32_t partner = -1;
-  for (std::size_t j = 0; j < distances.size(); ++j) {
-    const int distance = distances[j];
-    if (distance < nearest) {
-      second = nearest;
-      nearest = distance;
-      partner = static_cast<std::int32_t>(j);
-    } else if (distance < second) {
-      second = distance;
-    }
+  const SmallestTwo smallest = kernels().smallest_two(distances.data(), distances.size());
+  const bool unambiguous = distances.size() > 1 && smallest.first < ratio * smallest.second;
+  if (!unambiguous) {
+    return -1;
   }
-  const bool unambiguous = distances.size() > 1 && nearest < ratio * second;
-  return unambiguous ? partner : -1;
+  return static_cast<std::int32_t>(std::find(distances.begin(), distances.end(), smallest.first) -
+                                   distances.begin());
 }
 
 void findPairs(const FeatureSet& map, const FeatureSet& view, const RegistrationSettings& settings,

@@ -4,6 +4,7 @@
 
 #include "core/features/box_hessian.h"
 #include "core/features/box_sums.h"
+#include "core/features/integral_image.h"
 #include "core/features/maxima.h"
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
@@ -18,9 +19,10 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
   hessianRow(differences, filter, begin, 1, count, responses);
 }
 
-constexpr Kernels kScalar{"scalar",        differenceColumns, false,     differenceColumnsXxYy,
-                          hessianRowAbove, scalarHessianRow,  nextPeak,  boxSumRow,
-                          orientationRow,  hammingDistances,  productSum};
+constexpr Kernels kScalar{"scalar",        differenceColumns, false,          differenceColumnsXxYy,
+                          hessianRowAbove, scalarHessianRow,  everyOther,     nextPeak,
+                          integralRow,     boxSumRow,         orientationRow, hammingDistances,
+                          smallestTwo,     productSum};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

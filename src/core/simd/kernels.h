@@ -11,6 +11,7 @@ struct ColumnDifferences;
 class DescriptorTable;
 struct Descriptor;
 struct FilterRows;
+struct SmallestTwo;
 
 /// The loops that take the time, for one instruction set. Every path gives the same results to the last bit;
 /// the scalar functions, declared where they belong, are the reference.
@@ -31,9 +32,14 @@ struct Kernels {
   /// See hessianRow() in box_hessian.h, with a step of 1.
   void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
                       float* responses);
+  /// See everyOther() in box_hessian.h.
+  void (*every_other)(const float* from, int count, float* to);
   /// See nextPeak() in maxima.h.
   int (*next_peak)(const float* up, const float* here, const float* down, int begin, int end,
                    float threshold);
+  /// See integralRow() in integral_image.h.
+  void (*integral_row)(const std::uint8_t* pixels, const std::uint32_t* above, int columns,
+                       std::uint32_t* sums);
   /// See boxSumRow() in box_sums.h.
   void (*box_sum_row)(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
                       std::uint16_t* sums);
@@ -43,6 +49,8 @@ struct Kernels {
   /// See hammingDistances() in descriptor_table.h.
   void (*hamming_distances)(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                             std::size_t end, std::uint16_t* distances);
+  /// See smallestTwo() in descriptor_table.h.
+  SmallestTwo (*smallest_two)(const std::uint16_t* distances, std::size_t count);
   /// See productSum() in edge_correlation.h; `count` must be a multiple of kProductBlock.
   std::int32_t (*product_sum)(const std::int16_t* a, const std::int16_t* b, std::size_t stride,
                               std::size_t rows, std::size_t count);

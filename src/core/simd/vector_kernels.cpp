@@ -7,6 +7,7 @@
 
 #include "core/features/box_hessian.h"
 #include "core/features/box_sums.h"
+#include "core/features/integral_image.h"
 #include "core/features/maxima.h"
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
@@ -50,25 +51,28 @@ HWY_INLINE U32 differenceXy(const FilterRows& rows, int x) {
   return hn::Sub(hn::Sub(at(rows.xy[1]), at(rows.xy[0])), hn::Sub(at(rows.xy[3]), at(rows.xy[2])));
 }
 
-void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
+/// Where the vector that has a column begins. Rows and differences begin and end with whole lines: whole
+/// vectors need no remainder, and each is in one line.
+HWY_INLINE int vectorOf(int column) {
   const int lanes = static_cast<int>(hn::Lanes(kU32));
-  int x = begin;
-  for (; x + lanes <= end; x += lanes) {
-    hn::StoreU(differenceXx(rows, x), kU32, differences.xx.data() + x);
-    hn::StoreU(differenceYy(rows, x), kU32, differences.yy.data() + x);
+  return column / lanes * lanes;
+}
+
+void differenceColumnsXxYy(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
+  std::uint32_t* HWY_RESTRICT xx = differences.xx.data();
+  std::uint32_t* HWY_RESTRICT yy = differences.yy.data();
+  for (int x = vectorOf(begin); x < end; x += static_cast<int>(hn::Lanes(kU32))) {
+    hn::StoreU(differenceXx(rows, x), kU32, xx + x);
+    hn::StoreU(differenceYy(rows, x), kU32, yy + x);
   }
-  perennial::differenceColumnsXxYy(rows, x, end, differences);
 }
 
 void differenceColumns(const FilterRows& rows, int begin, int end, ColumnDifferences& differences) {
-  const int lanes = static_cast<int>(hn::Lanes(kU32));
-  int x = begin;
-  for (; x + lanes <= end; x += lanes) {
-    hn::StoreU(differenceXx(rows, x), kU32, differences.xx.data() + x);
-    hn::StoreU(differenceYy(rows, x), kU32, differences.yy.data() + x);
-    hn::StoreU(differenceXy(rows, x), kU32, differences.xy.data() + x);
+  std::uint32_t* HWY_RESTRICT xy = differences.xy.data();
+  HWY_NAMESPACE::differenceColumnsXxYy(rows, begin, end, differences);
+  for (int x = vectorOf(begin); x < end; x += static_cast<int>(hn::Lanes(kU32))) {
+    hn::StoreU(differenceXy(rows, x), kU32, xy + x);
   }
-  perennial::differenceColumns(rows, x, end, differences);
 }
 
 HWY_INLINE Float scaled(U32 sum, Float norm) {
@@ -113,7 +117,7 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
   const Float below = hn::Set(kFloat, kBelowThreshold);
   const std::uint32_t* HWY_RESTRICT xx = differences.xx.data() + begin;
   const std::uint32_t* HWY_RESTRICT yy = differences.yy.data() + begin;
-  int computed = 0;
+  int total = 0;
   int i = 0;
   for (; i + lanes <= count; i += lanes) {
     const auto at = [i](const std::uint32_t* values) HWY_ATTR { return hn::LoadU(kU32, values + i); };
@@ -130,17 +134,28 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
                                hn::Sub(differenceXy(rows, x + lobe + 1), differenceXy(rows, x + 1)));
     const Float dxy = scaled(sum_xy, norm);
     hn::StoreU(hn::Sub(bound, hn::Mul(hn::Mul(weight, dxy), dxy)), kFloat, responses + i);
-    computed += lanes;
+    total += lanes;
   }
-  return computed + perennial::hessianRowAbove(rows, differences, filter, begin + i, count - i, threshold,
-                                               responses + i);
+  return total + perennial::hessianRowAbove(rows, differences, filter, begin + i, count - i, threshold,
+                                            responses + i);
+}
+
+void everyOther(const float* from, int count, float* to) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloat));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    Float even;
+    Float odd;
+    hn::LoadInterleaved2(kFloat, from + 2 * i, even, odd);
+    hn::StoreU(even, kFloat, to + i);
+  }
+  perennial::everyOther(from + 2 * i, count - i, to + i);
 }
 
 int nextPeak(const float* up, const float* here, const float* down, int begin, int end, float threshold) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const Float least = hn::Set(kFloat, threshold);
-  int i = begin;
-  for (; i + lanes <= end; i += lanes) {
+  for (int i = begin; i < end; i += lanes) {
     const Float value = hn::LoadU(kFloat, here + i);
     const auto high = hn::Ge(value, least);
     if (hn::AllFalse(kFloat, high)) {
@@ -151,11 +166,38 @@ int nextPeak(const float* up, const float* here, const float* down, int begin, i
     const auto peak = hn::And(high, hn::And(hn::Ge(value, earlier), hn::Gt(value, later)));
     const auto first = hn::FindFirstTrue(kFloat, peak);
     if (first >= 0) {
-      return i + static_cast<int>(first);
+      return std::min(end, i + static_cast<int>(first));
     }
   }
-  return perennial::nextPeak(up, here, down, i, end, threshold);
+  return std::max(begin, end);
 }
+
+#if HWY_TARGET == HWY_SCALAR
+using perennial::integralRow;
+#else
+/// Sums within four pixels at a time, and the sum so far added to all of them.
+void integralRow(const std::uint8_t* pixels, const std::uint32_t* above, int columns,
+                 std::uint32_t* HWY_RESTRICT sums) {
+  const hn::FixedTag<std::uint32_t, 4> u32;
+  const hn::FixedTag<std::uint8_t, 4> u8;
+  auto row_sum = hn::Zero(u32);
+  sums[0] = 0;
+  int x = 0;
+  for (; x + 4 <= columns; x += 4) {
+    auto sum = hn::PromoteTo(u32, hn::LoadU(u8, pixels + x));
+    sum = hn::Add(sum, hn::ShiftLeftLanes<1>(sum));
+    sum = hn::Add(sum, hn::ShiftLeftLanes<2>(sum));
+    sum = hn::Add(sum, row_sum);
+    row_sum = hn::Broadcast<3>(sum);
+    hn::StoreU(hn::Add(sum, hn::LoadU(u32, above + x + 1)), u32, sums + x + 1);
+  }
+  std::uint32_t rest = hn::GetLane(row_sum);
+  for (; x < columns; ++x) {
+    rest += pixels[x];
+    sums[x + 1] = above[x + 1] + rest;
+  }
+}
+#endif
 
 void boxSumRow(const std::uint32_t* above, const std::uint32_t* below, int side, int count,
                std::uint16_t* HWY_RESTRICT sums) {
@@ -237,6 +279,27 @@ std::int32_t productSum(const std::int16_t* a, const std::int16_t* b, std::size_
   return hn::GetLane(hn::SumOfLanes(i32, hn::Add(even, odd)));
 }
 
+SmallestTwo smallestTwo(const std::uint16_t* distances, std::size_t count) {
+  const hn::ScalableTag<std::uint16_t> u16;
+  const std::size_t lanes = hn::Lanes(u16);
+  auto first = hn::Set(u16, SmallestTwo::kNone);
+  auto second = first;
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto next = hn::LoadU(u16, distances + i);
+    second = hn::Min(second, hn::Max(first, next));
+    first = hn::Min(first, next);
+  }
+  SmallestTwo smallest = perennial::smallestTwo(distances + i, count - i);
+  HWY_ALIGN std::uint16_t found[2 * hn::MaxLanes(u16)];
+  hn::Store(first, u16, found);
+  hn::Store(second, u16, found + lanes);
+  for (std::size_t lane = 0; lane < 2 * lanes; ++lane) {
+    smallest.offer(found[lane]);
+  }
+  return smallest;
+}
+
 const Kernels* vectorKernels() {
   static constexpr const char* kName = HWY_TARGET == HWY_AVX3_DL ? "avx512dl"
                                        : HWY_TARGET == HWY_AVX3  ? "avx512"
@@ -245,9 +308,10 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,           differenceColumns, true,      differenceColumnsXxYy,
-                                  hessianRowAbove, hessianRow,        nextPeak,  boxSumRow,
-                                  orientationRow,  hammingDistances,  productSum};
+  static constexpr Kernels kTable{
+      kName,    differenceColumns, true,      differenceColumnsXxYy, hessianRowAbove,  hessianRow, everyOther,
+      nextPeak, integralRow,       boxSumRow, orientationRow,        hammingDistances, smallestTwo,
+      productSum};
   return &kTable;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -182,6 +183,54 @@ TEST_P(EachPath, distancesAreThoseOfTwoDescriptors) {
   }
 }
 
+TEST_P(EachPath, theTwoSmallestAreThoseOfASort) {
+  std::mt19937 random(6);
+  for (std::size_t count = 0; count <= 70; ++count) {
+    for (const unsigned range : {3U, 257U}) {  // with many equal ones, and with few
+      std::vector<std::uint16_t> distances(count);
+      std::generate(distances.begin(), distances.end(),
+                    [&] { return static_cast<std::uint16_t>(random() % range); });
+      const SmallestTwo found = kernels().smallest_two(distances.data(), count);
+      std::sort(distances.begin(), distances.end());
+      distances.resize(std::max<std::size_t>(count, 2), SmallestTwo::kNone);
+      EXPECT_EQ(found.first, distances[0]) << count;
+      EXPECT_EQ(found.second, distances[1]) << count;
+    }
+  }
+}
+
+TEST_P(EachPath, sumsOfPixelsAreTheSame) {
+  std::mt19937 random(7);
+  for (const int columns : {0, 1, 3, 4, 31, 64, 203}) {
+    const auto size = static_cast<std::size_t>(columns) + 1;
+    std::vector<std::uint8_t> pixels(size);
+    std::vector<std::uint32_t> above(size);
+    std::generate(pixels.begin(), pixels.end(), [&] { return static_cast<std::uint8_t>(random()); });
+    std::generate(above.begin(), above.end(), [&] { return static_cast<std::uint32_t>(random()); });
+    std::vector<std::uint32_t> found(size + 1, 7);
+    std::vector<std::uint32_t> expected = found;
+    kernels().integral_row(pixels.data(), above.data(), columns, found.data());
+    integralRow(pixels.data(), above.data(), columns, expected.data());
+    EXPECT_EQ(found, expected) << columns;
+    EXPECT_EQ(found.back(), 7U) << "nothing is written beyond";
+  }
+}
+
+TEST_P(EachPath, takesEveryOther) {
+  for (const int count : {0, 1, 4, 17, 32, 67}) {
+    std::vector<float> values(2 * static_cast<std::size_t>(count) + 1);
+    std::iota(values.begin(), values.end(), 1.0F);
+    std::vector<float> apart(static_cast<std::size_t>(count) + 1, -1.0F);
+    kernels().every_other(values.data(), count, apart.data());
+    EXPECT_EQ(apart.back(), -1.0F) << "nothing is written beyond";
+    kernels().every_other(values.data(), count, values.data());
+    for (std::size_t i = 0; i + 1 < apart.size(); ++i) {
+      EXPECT_EQ(apart[i], static_cast<float>(2 * i + 1));
+      EXPECT_EQ(values[i], apart[i]) << "in place";
+    }
+  }
+}
+
 TEST_P(EachPath, orientationsAreTheSame) {
   // Smooth, as it is, rough, and the steepest there can be.
   std::mt19937 random(5);
@@ -215,7 +264,7 @@ TEST_P(EachPath, peaksAreTheSame) {
   std::mt19937 random(4);
   std::vector<float> rows[3];
   for (auto& row : rows) {
-    for (int i = 0; i < 203; ++i) {
+    for (int i = 0; i < 203 + kReadBeyond; ++i) {
       row.push_back(static_cast<float>(random() % 5));
     }
   }
