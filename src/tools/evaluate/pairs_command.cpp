@@ -1,5 +1,6 @@
 #include "tools/evaluate/pairs_command.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -16,7 +17,8 @@ const char kPairsUsage[] =
 Registers every pair of images of each place, the earlier one as the map, without map management. Writes errors.csv and
 summary.json to DIR.
 
-  --set KEY=VALUE   a parameter: registration/method, registration/ratio, extraction/features, ...
+  --set KEY=VALUE   a parameter: registration/method, registration/ratio, extraction/features, ... Unless it is set,
+                    registration/min_confidence is 0 here: every answer counts, its confidence stands beside it
   --disturb KIND=AMOUNT   disturbs every view, not the maps: cover=0.3 (a passing object covers that share), blur=10 (px,
                     horizontally), roll=3, pitch=3 (degrees the camera is tilted), saturate=0.5 (that share is white)
 )";
@@ -95,6 +97,15 @@ Settings loadGroup(const std::string& group, const Assignments& assignments) {
   return settings;
 }
 
+/// What keeps silent a robot that drives would hide how good the registration and its confidence are.
+void answerAlways(Assignments& assignments) {
+  const std::string key = "registration/min_confidence";
+  const auto is_key = [&key](const auto& entry) { return entry.first == key; };
+  if (std::none_of(assignments.begin(), assignments.end(), is_key)) {
+    assignments.emplace_back(key, "0");
+  }
+}
+
 PairsSettings settingsFrom(const Assignments& assignments) {
   for (const auto& entry : assignments) {
     if (entry.first.rfind("registration/", 0) != 0 && entry.first.rfind("extraction/", 0) != 0) {
@@ -120,6 +131,7 @@ void print(const PairsEvaluation& evaluation) {
 
 int evaluatePairsCommand(const std::vector<std::string>& arguments) {
   Options options = parse(arguments);
+  answerAlways(options.assignments);
   PairsSettings settings = settingsFrom(options.assignments);
   if (options.disturbance) {
     settings.disturbance = options.disturbance;
