@@ -7,7 +7,7 @@ namespace perennial {
 namespace {
 
 constexpr std::chrono::milliseconds kReplyTimeout(2000);
-constexpr int kAttempts = 2;
+constexpr std::chrono::milliseconds kRetryPause(1000);
 
 }  // namespace
 
@@ -50,11 +50,16 @@ void TaraControl::work() {
     const auto exposure = std::exchange(wanted_exposure_, std::nullopt);
     const auto imu = std::exchange(wanted_imu_, std::nullopt);
     lock.unlock();
-    for (int attempt = 0; exposure && attempt < kAttempts && !applyExposure(*exposure); ++attempt) {
-    }
-    for (int attempt = 0; imu && attempt < kAttempts && !applyImu(*imu); ++attempt) {
-    }
+    const bool exposed = !exposure || applyExposure(*exposure);
+    const bool measuring = !imu || applyImu(*imu);
     lock.lock();
+    if (exposed && measuring) {
+      continue;
+    }
+    // What the camera has not confirmed is asked for again, unless something newer is wanted by now.
+    wanted_exposure_ = exposed || wanted_exposure_ ? wanted_exposure_ : exposure;
+    wanted_imu_ = measuring || wanted_imu_ ? wanted_imu_ : imu;
+    changed_.wait_for(lock, kRetryPause, [this] { return end_; });
   }
 }
 

@@ -188,7 +188,9 @@ class TaraTest(unittest.TestCase):
         self.reconfigure.update_configuration({"exposure": 5000})
         self.wait_for_images("images go on meanwhile")
         self.bench.wait_for(lambda: self.value("failed requests") > failures, "the time-out is counted")
+        begin = self.count("imu")
         self.inject("hid_silent", 0)
+        self.bench.wait_for(lambda: self.count("imu") > begin + 10, "inertial data comes again, nobody having asked")
         self.reconfigure.update_configuration({"exposure": 6000})
         self.bench.wait_for(lambda: self.state("exposure") == 6000, "requests work again")
 
