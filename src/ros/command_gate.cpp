@@ -64,7 +64,11 @@ bool CommandGate::drive(const Velocity& velocity, const ros::Time& stamp) {
     send({});
     return fresh(now);
   }
-  approachAndSend(permit.kind == MotionPermit::Kind::kHold ? Velocity{} : velocity, elapsed_s);
+  if (permit.kind == MotionPermit::Kind::kHold) {
+    hold(now);
+  } else {
+    approachAndSend(velocity, elapsed_s);
+  }
   return true;
 }
 
@@ -147,9 +151,11 @@ void CommandGate::enforce() {
   if (was_by_hand || (driving_ && (!fresh(now) || permit.kind == MotionPermit::Kind::kStop))) {
     send({});
   } else if (driving_ && permit.kind == MotionPermit::Kind::kHold && velocity_ != Velocity{}) {
-    approachAndSend({}, kWatchPeriod.toSec());
+    hold(now);
   }
 }
+
+void CommandGate::hold(const ros::Time& now) { approachAndSend({}, (now - sent_).toSec()); }
 
 void CommandGate::approachAndSend(const Velocity& wanted, double elapsed_s) {
   send(approach(velocity_, wanted, std::clamp(elapsed_s, 0.0, kLongestStep_s), limits_));
@@ -157,6 +163,7 @@ void CommandGate::approachAndSend(const Velocity& wanted, double elapsed_s) {
 
 void CommandGate::send(const Velocity& velocity) {
   velocity_ = velocity;
+  sent_ = ros::Time::now();
   newest_ = toMessage(velocity);
   publisher_.publish(newest_);
 }

@@ -63,6 +63,8 @@ class CommandGate {
   template <typename Change>
   void change(const Change& apply);
   void enforce();
+  /// Brakes for an obstacle, by the time since the newest command, whoever sent that.
+  void hold(const ros::Time& now);
   void approachAndSend(const Velocity& wanted, double elapsed_s);
   void send(const Velocity& velocity);
 
@@ -75,6 +77,7 @@ class CommandGate {
   bool driving_ = false;
   bool by_hand_ = false;
   ros::Time stamp_;    ///< of the data that the newest command was computed from
+  ros::Time sent_;     ///< when the newest command left
   Velocity velocity_;  ///< the newest one sent
   geometry_msgs::Twist newest_;
   ros::Publisher publisher_;
