@@ -278,14 +278,16 @@ class Stops(unittest.TestCase):
 
     def test_blind_it_slows_holds_and_goes_on_when_it_sees(self):
         lost_at = self.robot.x
-        states = []
+        states, speeds = [], []
         for level in range(60):
             self.step_blind(level)
             states.append(self.stack.states[-1].state)
             if states[-1] == NavigationState.DEGRADED and len(states) > 5:
-                self.assertAlmostEqual(self.robot.command().linear.x, 0.25, delta=0.02)
+                speeds.append(self.robot.command().linear.x)
             if states[-1] == NavigationState.HOLDING:
                 break
+        for speed in speeds[:-1]:  # with the last one it may hold already, and say so next
+            self.assertAlmostEqual(speed, 0.25, delta=0.02)
         self.assertIn(NavigationState.DEGRADED, states)
         self.assert_state(NavigationState.HOLDING, "not recognised for 1.0 m")
         self.assertAlmostEqual(self.robot.x - lost_at, 1.0, delta=0.15)
