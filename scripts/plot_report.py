@@ -145,7 +145,7 @@ def plot_distribution(runs, axes):
     style = styles(runs)
     for run in runs:
         errors = run.absolute_errors()
-        everything = max(1, len(run.rows))
+        everything = max(1, sum(row["ground_truth_px"] != "" for row in run.rows))
         xs, ys = [0.0], [0.0]
         for i, error in enumerate(errors):
             xs += [error, error]
