@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <opencv2/imgproc.hpp>
 
 namespace perennial {
 namespace {

@@ -1,5 +1,4 @@
 #include "perennial/ros/map_manager_node.h"
-
 #include "ros/node_main.h"
 
 int main(int argc, char** argv) {

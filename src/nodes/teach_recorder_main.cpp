@@ -1,5 +1,4 @@
 #include "perennial/ros/teach_recorder.h"
-
 #include "ros/node_main.h"
 
 int main(int argc, char** argv) {

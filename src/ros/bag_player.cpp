@@ -1,13 +1,13 @@
 #include "perennial/ros/bag_player.h"
 
-#include <algorithm>
-#include <utility>
-
 #include <actionlib/client/simple_action_client.h>
 #include <rosbag/view.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/Image.h>
 #include <topic_tools/shape_shifter.h>
+
+#include <algorithm>
+#include <utility>
 
 #include "perennial/core/error.h"
 #include "perennial/ros/parameters.h"

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
 #include <chrono>
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
-
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include "perennial/ros/master_monitor.h"
 

@@ -1,11 +1,11 @@
 #include "perennial/ros/parameters.h"
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <variant>
-
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include "perennial/core/error.h"
 

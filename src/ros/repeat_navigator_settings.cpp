@@ -1,9 +1,9 @@
 #include "perennial/ros/repeat_navigator_settings.h"
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
 #include <string>
 #include <vector>
-
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include "perennial/core/error.h"
 #include "perennial/ros/parameters.h"
@@ -18,8 +18,8 @@ const std::vector<std::string> kGroups{"extraction",   "registration", "steering
 /// Of a robot of which nothing is known.
 const VelocityLimits kLimits{1.5, 1.5, 1.5, 10.0, 2.0, 4.0, 5.0};
 
-/// The defaults know nothing of who watches over this robot. A node that is started anew after the master was,
-/// and found none of what the launch file had set, must not drive with them.
+/// The defaults know nothing of who watches over this robot. A node that is started anew after the master
+/// was, and found none of what the launch file had set, must not drive with them.
 void requireParameters(const ros::NodeHandle& private_nh) {
   XmlRpc::XmlRpcValue all;
   const bool set = private_nh.getParam(private_nh.getNamespace(), all) &&

@@ -1,5 +1,10 @@
 // rosrun perennial_nav dataset_to_bag DATASET TRAVERSAL OUT.bag: one traversal of a data set as a bag of
 // images and odometry, to be taught from or registered by the nodes.
+#include <cv_bridge/cv_bridge.h>
+#include <nav_msgs/Odometry.h>
+#include <rosbag/bag.h>
+#include <sensor_msgs/image_encodings.h>
+
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -10,11 +15,6 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <cv_bridge/cv_bridge.h>
-#include <nav_msgs/Odometry.h>
-#include <rosbag/bag.h>
-#include <sensor_msgs/image_encodings.h>
 
 #include "perennial/core/csv.h"
 #include "perennial/core/dataset.h"

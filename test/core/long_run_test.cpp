@@ -1,6 +1,9 @@
 // A robot that repeats a path for years, in one process and in simulated time: memory, time per traversal and
 // numbers must not drift. PERENNIAL_TRAVERSALS says how many traversals; the figures of 10000 stand in
 // docs/reliability.md.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -8,12 +11,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <string>
-#include <unistd.h>
-#include <vector>
-
-#include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
 #include "core/map_test_support.h"
 #include "perennial/core/map_manager.h"

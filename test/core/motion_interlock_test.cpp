@@ -1,13 +1,14 @@
 // What forbids motion from outside of navigation, how long, and what wins; and the camera's watch.
+#include "perennial/core/motion_interlock.h"
+
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "perennial/core/error.h"
 #include "perennial/core/image_watch.h"
-#include "perennial/core/motion_interlock.h"
 
 namespace perennial {
 namespace {

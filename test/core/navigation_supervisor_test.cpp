@@ -1,8 +1,9 @@
 // Every transition of the supervisor, and which reason wins when there are several.
+#include "perennial/core/navigation_supervisor.h"
+
 #include <gtest/gtest.h>
 
 #include "perennial/core/error.h"
-#include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/sight.h"
 
 namespace perennial {

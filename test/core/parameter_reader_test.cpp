@@ -1,9 +1,9 @@
 #include "perennial/core/parameter_reader.h"
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <limits>
-
-#include <gtest/gtest.h>
 
 #include "perennial/core/error.h"
 

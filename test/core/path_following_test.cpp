@@ -1,10 +1,10 @@
 // The parts that a repeat is made of: path profile, steering, odometer, window of local maps, along-path
 // correction.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
 #include <random>
-
-#include <gtest/gtest.h>
 
 #include "perennial/core/active_map.h"
 #include "perennial/core/along_path.h"

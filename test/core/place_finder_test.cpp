@@ -1,14 +1,15 @@
 // A view is found among all local maps of a path; refused where nothing or too much looks like it.
+#include "perennial/core/place_finder.h"
+
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <cstdio>
 #include <optional>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "perennial/core/error.h"
 #include "perennial/core/localisation.h"
-#include "perennial/core/place_finder.h"
 #include "perennial/testing/synthetic_place.h"
 
 namespace perennial {

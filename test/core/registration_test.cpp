@@ -1,10 +1,10 @@
 #include "perennial/core/registration.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
-
-#include <gtest/gtest.h>
 
 #include "perennial/core/error.h"
 

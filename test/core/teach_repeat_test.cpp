@@ -1,13 +1,14 @@
 // A whole teach and repeat in one process, on the core alone: images are cut from a random texture, their
 // position is the camera's heading.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
-#include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
-
+#include "core/map_test_support.h"
 #include "perennial/core/error.h"
 #include "perennial/core/map_manager.h"
 #include "perennial/core/repeat_session.h"
@@ -15,7 +16,6 @@
 #include "perennial/strategies/latest_map.h"
 #include "perennial/strategies/score_based.h"
 #include "perennial/strategies/static_map.h"
-#include "core/map_test_support.h"
 
 namespace perennial {
 namespace {

@@ -59,8 +59,9 @@ void sortAndCheck(Dataset& dataset);
 
 /// Reads `folder`/manifest.csv with the columns traversal, stamp (ISO 8601, UTC), distance_m, image (relative
 /// to the folder), offset_px, in any order; others are ignored. Throws DatasetError naming file and line for:
-/// a missing column or file, a field that is no number or time, a distance that is negative or beyond 1000 km, a place listed twice in
-/// a traversal, time that goes backwards within a place, no rows. Images are not opened.
+/// a missing column or file, a field that is no number or time, a distance that is negative or beyond 1000
+/// km, a place listed twice in a traversal, time that goes backwards within a place, no rows. Images are not
+/// opened.
 ///
 /// A folder without a manifest may hold maps of the reference system (reference_map.h), see
 /// loadReferenceDataset().

@@ -82,9 +82,9 @@ class MotionInterlock {
   bool resume();
 
   /// A sign of life: `held`: whether the button is down (a heartbeat: always). `stamp_s`: when that was so,
-  /// by the clock of the one who says it; 0: unknown, taken for now. From there on its time-out runs, so late
-  /// messages do not count as news; a stamp further in the future than the time-out is not believed, and
-  /// counts as no sign.
+  /// by the clock of the one who says it; 0: unknown, taken as the present. From there on its time-out runs,
+  /// so late messages do not count as news; a stamp further in the future than the time-out is not believed,
+  /// and counts as no sign.
   void deadMan(bool held, double stamp_s, double now_s);
   /// Distance of the nearest thing in the way; infinity when there is none, NaN when the sensor does not
   /// know. `stamp_s` as above.

@@ -2,10 +2,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
-
-#include <opencv2/core.hpp>
 
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/map_file.h"

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <rosbag/bag.h>
+
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -7,10 +11,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
-#include <rosbag/bag.h>
 
 #include "perennial/core/parameter_reader.h"
 #include "perennial_nav/Processed.h"

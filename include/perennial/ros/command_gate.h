@@ -1,11 +1,11 @@
 #pragma once
 
-#include <mutex>
-#include <string>
-
 #include <geometry_msgs/Twist.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+
+#include <mutex>
+#include <string>
 
 #include "perennial/core/drivers/velocity_limiter.h"
 #include "perennial/core/motion_interlock.h"

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include <geometry_msgs/Twist.h>
 #include <nav_msgs/Odometry.h>
-#include <opencv2/core.hpp>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 #include "perennial/core/active_map.h"
 #include "perennial/core/feature.h"

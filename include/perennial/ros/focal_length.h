@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
-
 #include <sensor_msgs/CameraInfo.h>
+
+#include <optional>
 
 namespace perennial {
 

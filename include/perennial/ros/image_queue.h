@@ -1,9 +1,9 @@
 #pragma once
 
+#include <sensor_msgs/Image.h>
+
 #include <cstddef>
 #include <deque>
-
-#include <sensor_msgs/Image.h>
 
 namespace perennial {
 

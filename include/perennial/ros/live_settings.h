@@ -1,9 +1,9 @@
 #pragma once
 
-#include <functional>
-
 #include <dynamic_reconfigure/server.h>
 #include <ros/ros.h>
+
+#include <functional>
 
 #include "perennial/core/repeat_session.h"
 #include "perennial_nav/ExtractionConfig.h"

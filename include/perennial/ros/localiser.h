@@ -1,13 +1,13 @@
 #pragma once
 
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
+
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-
-#include <ros/ros.h>
-#include <sensor_msgs/Image.h>
 
 #include "perennial/core/localisation.h"
 #include "perennial/ros/traversal_client.h"

@@ -1,14 +1,14 @@
 #pragma once
 
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
-
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include "perennial/core/map_manager.h"
 #include "perennial/ros/strategy_loader.h"

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstddef>
-
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/Twist.h>
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
+
+#include <cstddef>
 
 #include "perennial/core/navigation_supervisor.h"
 #include "perennial/core/note_limit.h"
@@ -16,8 +16,8 @@
 namespace perennial {
 
 /// What the navigator tells others beside the registrations: navigation_state (latched), matches (drawn only
-/// while somebody subscribes), processed, diagnostics; and, in the log, changes of the state: of each state the
-/// first few in a traversal, so that the log is bounded by the traversals, not by the images.
+/// while somebody subscribes), processed, diagnostics; and, in the log, changes of the state: of each state
+/// the first few in a traversal, so that the log is bounded by the traversals, not by the images.
 class NavigationReporter {
  public:
   NavigationReporter(ros::NodeHandle nh, ros::NodeHandle private_nh);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <ros/node_handle.h>
+
 #include <string>
 #include <vector>
-
-#include <ros/node_handle.h>
 
 #include "perennial/core/parameter_reader.h"
 

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-
 #include <actionlib/server/simple_action_server.h>
 #include <image_transport/image_transport.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
+
+#include <memory>
+#include <optional>
+#include <string>
 
 #include "perennial/core/image_watch.h"
 #include "perennial/core/navigation_supervisor.h"

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <ros/time.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
-
-#include <ros/time.h>
 
 #include "perennial/core/repeat_session.h"
 #include "perennial_nav/LocalMap.h"

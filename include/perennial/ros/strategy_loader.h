@@ -1,10 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <pluginlib/class_loader.hpp>
 #include <string>
 #include <vector>
-
-#include <pluginlib/class_loader.hpp>
 
 #include "perennial/core/map_strategy.h"
 

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <string>
-
 #include <actionlib/server/simple_action_server.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <dynamic_reconfigure/server.h>
@@ -14,6 +9,11 @@
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
 
 #include "perennial/core/odometer.h"
 #include "perennial/core/restart_watch.h"

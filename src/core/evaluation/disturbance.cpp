@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-
 #include <opencv2/imgproc.hpp>
 
 #include "perennial/core/error.h"

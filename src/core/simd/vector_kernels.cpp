@@ -308,10 +308,10 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{
-      kName,    differenceColumns, true,      differenceColumnsXxYy, hessianRowAbove,  hessianRow, everyOther,
-      nextPeak, integralRow,       boxSumRow, orientationRow,        hammingDistances, smallestTwo,
-      productSum};
+  static constexpr Kernels kTable{kName,           differenceColumns, true,           differenceColumnsXxYy,
+                                  hessianRowAbove, hessianRow,        everyOther,     nextPeak,
+                                  integralRow,     boxSumRow,         orientationRow, hammingDistances,
+                                  smallestTwo,     productSum};
   return &kTable;
 }
 

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
-
 #include <boost/asio/ip/address.hpp>
+#include <utility>
 
 #include "perennial/core/error.h"
 

@@ -45,8 +45,8 @@ cv::Mat turnedLeft(const cv::Mat& image, int shift_px) {
 
 /// Registers and steers as the navigator would: with its parameters where they are set, the defaults where
 /// not. The first image is the map. Its own copies, turned by arithmetic, are registered once; every further
-/// image as it comes, so that a person can turn the robot and look. The calibration counts where there is one:
-/// it is waited for a moment.
+/// image as it comes, so that a person can turn the robot and look. The calibration counts where there is
+/// one: it is waited for a moment.
 struct Node {
   Node(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
       : settings(perennial::loadNode<Settings>(private_nh, {})),
@@ -94,8 +94,8 @@ struct Node {
 
   std::string gain() const {
     const std::optional<double> focal_px = perennial::focalLength(info, first.cols);
-    return focal_px ? "gain_per_rad counts, with a focal length of " + std::to_string(std::lround(*focal_px)) +
-                          " px by " + info_subscriber.getTopic()
+    return focal_px ? "gain_per_rad counts, with a focal length of " +
+                          std::to_string(std::lround(*focal_px)) + " px by " + info_subscriber.getTopic()
                     : "gain_per_px counts, for nothing comes on " + info_subscriber.getTopic();
   }
 
@@ -106,7 +106,8 @@ struct Node {
       return;
     }
     const double turn =
-        perennial::steer({}, result.displacement_px, perennial::focalLength(info, first.cols), steering).angular;
+        perennial::steer({}, result.displacement_px, perennial::focalLength(info, first.cols), steering)
+            .angular;
     const char* way = std::abs(*result.displacement_px) < 1.0 ? "go straight on"
                       : turn > 0.0                            ? "turn LEFT"
                                                               : "turn RIGHT";

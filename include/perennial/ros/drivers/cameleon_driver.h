@@ -15,8 +15,8 @@
 #include "perennial/core/drivers/track_odometry.h"
 #include "perennial/ros/drivers/cameleon_link.h"
 #include "perennial/ros/drivers/cameleon_messages.h"
-#include "perennial/ros/master_monitor.h"
 #include "perennial/ros/drivers/tick_timer.h"
+#include "perennial/ros/master_monitor.h"
 
 namespace perennial {
 
