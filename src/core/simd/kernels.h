@@ -11,6 +11,8 @@ struct ColumnDifferences;
 class DescriptorTable;
 struct Descriptor;
 struct FilterRows;
+class NeighbourList;
+struct OfferedRow;
 struct SmallestTwo;
 
 /// The loops that take the time, for one instruction set. Every path gives the same results to the last bit;
@@ -51,6 +53,9 @@ struct Kernels {
                             std::size_t end, std::uint16_t* distances);
   /// See smallestTwo() in descriptor_table.h.
   SmallestTwo (*smallest_two)(const std::uint16_t* distances, std::size_t count);
+  /// See offerRow() in neighbour_list.h.
+  void (*offer_row)(const OfferedRow& row, NeighbourList& of_map, NeighbourList* of_view,
+                    std::uint16_t* bounds);
   /// See productSum() in edge_correlation.h; `count` must be a multiple of kProductBlock.
   std::int32_t (*product_sum)(const std::int16_t* a, const std::int16_t* b, std::size_t stride,
                               std::size_t rows, std::size_t count);
