@@ -86,7 +86,8 @@ perennial_nav::LocalMap toMessage(const ActiveMap& map) {
   message.index = map.index;
   message.distance_m = map.distance_m;
   FeatureSet all;
-  all.reserve(map.alternatives.empty() ? 0 : map.alternatives.size() * map.alternatives.front().features.size());
+  all.reserve(map.alternatives.empty() ? 0
+                                       : map.alternatives.size() * map.alternatives.front().features.size());
   for (const ActiveMap::Alternative& alternative : map.alternatives) {
     for (std::size_t i = 0; i < alternative.features.size(); ++i) {
       all.add(alternative.features.keypoints[i], alternative.features.descriptors[i]);

@@ -68,8 +68,8 @@ struct OfferedRow {
 constexpr std::size_t kOfferBeyond = 64;
 
 /// Offers the row's view features to the map feature's list, and the map feature to theirs, of_view[view
-/// index]. `bounds` holds the bound of each of the latter, by place, and is kept so. Map features must come by
-/// ascending index. Behind the row's distances there must be kOfferBeyond of NeighbourList::kNoBound.
+/// index]. `bounds` holds the bound of each of the latter, by place, and is kept so. Map features must come
+/// by ascending index. Behind the row's distances there must be kOfferBeyond of NeighbourList::kNoBound.
 void offerRow(const OfferedRow& row, NeighbourList& of_map, NeighbourList* of_view,
               std::uint16_t* bounds) noexcept;
 

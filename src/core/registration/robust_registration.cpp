@@ -35,8 +35,8 @@ void sortView(const FeatureSet& view, RegistrationWorkspace::Buffers& buffers) {
   }
 }
 
-/// How many of ascending values satisfy `before`, which those at the front do. Without a branch: where the gate
-/// of a map feature begins cannot be predicted.
+/// How many of ascending values satisfy `before`, which those at the front do. Without a branch: where the
+/// gate of a map feature begins cannot be predicted.
 template <class Before>
 std::size_t countBefore(const std::vector<float>& ascending, const Before& before) {
   if (ascending.empty()) {
@@ -66,8 +66,9 @@ void findNeighbours(const FeatureSet& map, const FeatureSet& view, double gate_p
     use.hamming_distances(map.descriptors[i], buffers.view, begin, end, buffers.distances.data());
     const std::size_t count = end - begin;
     std::fill_n(buffers.distances.data() + count, kOfferBeyond, NeighbourList::kNoBound);
-    use.offer_row({buffers.distances.data(), count, static_cast<std::uint32_t>(i), buffers.by_y.data() + begin},
-                  buffers.of_map[i], buffers.of_view.data(), buffers.bounds.data() + begin);
+    use.offer_row(
+        {buffers.distances.data(), count, static_cast<std::uint32_t>(i), buffers.by_y.data() + begin},
+        buffers.of_map[i], buffers.of_view.data(), buffers.bounds.data() + begin);
   }
 }
 

@@ -94,7 +94,8 @@ void VoteProfile::collect(const std::vector<Vote>& votes, double reach_px) {
   half_ = static_cast<int>(std::lround(largest / kBin_px)) + 1;
   bins_.assign(static_cast<std::size_t>(2 * (half_ + kReach) + 1), 0.0);
   for (const Vote& vote : votes) {
-    bins_[static_cast<std::size_t>(std::lround(vote.displacement_px / kBin_px) + half_ + kReach)] += vote.weight;
+    bins_[static_cast<std::size_t>(std::lround(vote.displacement_px / kBin_px) + half_ + kReach)] +=
+        vote.weight;
   }
 }
 

@@ -20,10 +20,9 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
   hessianRow(differences, filter, begin, 1, count, responses);
 }
 
-constexpr Kernels kScalar{"scalar",        differenceColumns, false,          differenceColumnsXxYy,
-                          hessianRowAbove, scalarHessianRow,  everyOther,     nextPeak,
-                          integralRow,     boxSumRow,         orientationRow, hammingDistances,
-                          smallestTwo,     offerRow,          productSum};
+constexpr Kernels kScalar{"scalar",         differenceColumns, false,       filterRowAbove, scalarHessianRow,
+                          everyOther,       nextPeak,          integralRow, boxSumRow,      orientationRow,
+                          hammingDistances, smallestTwo,       offerRow,    productSum};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

@@ -22,15 +22,12 @@ struct Kernels {
 
   /// See differenceColumns() in box_hessian.h.
   void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
-  /// Whether hessian_row_above is faster than hessian_row: a compiler makes more of a loop that leaves
-  /// nothing out.
+  /// Whether filter_row_above is faster than difference_columns and hessian_row: a compiler makes more of a
+  /// loop that leaves nothing out.
   bool looks_first;
-  /// See differenceColumnsXxYy() in box_hessian.h.
-  void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end,
-                                   ColumnDifferences& differences);
-  /// See hessianRowAbove() in box_hessian.h.
-  int (*hessian_row_above)(const FilterRows& rows, const ColumnDifferences& differences,
-                           const BoxFilter& filter, int begin, int count, float threshold, float* responses);
+  /// See filterRowAbove() in box_hessian.h.
+  int (*filter_row_above)(const FilterRows& rows, const BoxFilter& filter, int begin, int count,
+                          float threshold, ColumnDifferences& differences, float* responses);
   /// See hessianRow() in box_hessian.h, with a step of 1.
   void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
                       float* responses);

@@ -142,6 +142,34 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
                                             responses + i);
 }
 
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+#include "core/simd/fused_hessian-inl.h"
+#define PERENNIAL_FUSED(lobe) \
+  case lobe:                  \
+    return fusedRowAbove<lobe>(rows, count, threshold, responses)
+#endif
+
+int filterRowAbove(const FilterRows& rows, const BoxFilter& filter, int begin, int count, float threshold,
+                   ColumnDifferences& differences, float* responses) {
+#ifdef PERENNIAL_FUSED
+  if (begin == filter.half()) {
+    switch (filter.lobe) {
+      PERENNIAL_FUSED(3);
+      PERENNIAL_FUSED(5);
+      PERENNIAL_FUSED(7);
+      PERENNIAL_FUSED(9);
+      PERENNIAL_FUSED(11);
+      default:
+        break;
+    }
+  }
+#endif
+  HWY_NAMESPACE::differenceColumnsXxYy(rows, begin - filter.half(), begin + count + filter.half() + 1,
+                                       differences);
+  return HWY_NAMESPACE::hessianRowAbove(rows, differences, filter, begin, count, threshold, responses);
+}
+#undef PERENNIAL_FUSED
+
 void everyOther(const float* from, int count, float* to) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   int i = 0;
@@ -379,10 +407,9 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,           differenceColumns, true,        differenceColumnsXxYy,
-                                  hessianRowAbove, hessianRow,        everyOther,  nextPeak,
-                                  integralRow,     boxSumRow,         orientationRow, hammingDistances,
-                                  smallestTwo,     offerRow,          productSum};
+  static constexpr Kernels kTable{
+      kName,       differenceColumns, true,           filterRowAbove,   hessianRow,  everyOther, nextPeak,
+      integralRow, boxSumRow,         orientationRow, hammingDistances, smallestTwo, offerRow,   productSum};
   return &kTable;
 }
 
