@@ -78,6 +78,7 @@ if(TARGET map_tool_test)
 endif()
 perennial_gtest(map_update_test core/map_update_test.cpp)
 perennial_gtest(map_writer_test core/map_writer_test.cpp)
+perennial_gtest(row_checksum_test core/row_checksum_test.cpp)
 
 # --- strategies ---
 perennial_gtest(anchored_map_test core/anchored_map_test.cpp LIBRARIES perennial_strategies)

@@ -13,6 +13,7 @@ ActiveMap activate(const MapStrategy& strategy, const LocalMap& map, double stam
   for (const std::vector<std::size_t>& selected : strategy.alternatives(map, stamp_s)) {
     ActiveMap::Alternative alternative;
     alternative.features.reserve(selected.size());
+    alternative.positions.reserve(selected.size());
     for (const std::size_t i : selected) {
       alternative.features.add(map.features.keypoints.at(i), map.features.descriptors.at(i));
       alternative.positions.push_back(static_cast<std::uint32_t>(i));

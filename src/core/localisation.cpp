@@ -7,6 +7,17 @@
 #include "perennial/core/human_text.h"
 
 namespace perennial {
+namespace {
+
+std::size_t featuresOf(const ActiveMap& map) {
+  std::size_t features = 0;
+  for (const ActiveMap::Alternative& alternative : map.alternatives) {
+    features += alternative.features.size();
+  }
+  return features;
+}
+
+}  // namespace
 
 Localisation::Localisation(const LocalisationSettings& settings, const RegistrationSettings& registration,
                            std::size_t local_maps)
@@ -15,6 +26,25 @@ Localisation::Localisation(const LocalisationSettings& settings, const Registrat
 void Localisation::look(FeatureSet view, double travelled_m) {
   travelled_m_ = travelled_m;
   finder_.seek(std::move(view));
+}
+
+void Localisation::consider(ActiveMap map) {
+  auto shared = std::make_shared<const ActiveMap>(std::move(map));
+  const std::size_t features = featuresOf(*shared);
+  if (kept_.size() == next() && kept_features_ + features <= kMostKept) {
+    kept_.push_back(shared);
+    kept_features_ += features;
+  }
+  finder_.consider(std::move(shared));
+}
+
+std::size_t Localisation::considerKept(std::size_t most) {
+  const std::size_t first = next();
+  const std::size_t end = std::min(kept_.size(), first + most);
+  for (std::size_t i = first; i < end; ++i) {
+    finder_.consider(kept_[i]);
+  }
+  return next() - first;
 }
 
 std::optional<PlaceGuess> Localisation::conclude() {

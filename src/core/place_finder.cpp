@@ -67,18 +67,18 @@ void PlaceFinder::seek(FeatureSet view) {
   considered_ = 0;
 }
 
-void PlaceFinder::consider(ActiveMap map) {
-  last_m_ = map.distance_m;
+void PlaceFinder::consider(std::shared_ptr<const ActiveMap> map) {
+  last_m_ = map->distance_m;
   if (considered_++ == 0) {
-    first_m_ = map.distance_m;
+    first_m_ = map->distance_m;
   }
-  if (!open_.members.empty() && map.distance_m >= open_.begin_m + kStretch_m) {
+  if (!open_.members.empty() && map->distance_m >= open_.begin_m + kStretch_m) {
     closeStretch();
   }
   if (open_.members.empty()) {
-    open_.begin_m = map.distance_m;
+    open_.begin_m = map->distance_m;
   }
-  const int inliers = judgeRoughly(map);
+  const int inliers = judgeRoughly(*map);
   open_.inliers = std::max(open_.inliers, inliers);
   open_.members.push_back({std::move(map), inliers});
   if (open_.members.size() > kMapsOfAStretch) {
@@ -111,7 +111,7 @@ std::vector<PlaceFinder::Candidate> PlaceFinder::likeliest() {
   std::vector<Candidate> candidates;
   for (const Stretch& stretch : stretches_) {
     for (const Stretch::Member& member : stretch.members) {
-      candidates.push_back(judge(member.map));
+      candidates.push_back(judge(*member.map));
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),

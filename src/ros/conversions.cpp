@@ -48,6 +48,9 @@ EdgeField edgesOf(const perennial_nav::LocalMap& message) {
 
 perennial_nav::Features toMessage(const FeatureSet& features) {
   perennial_nav::Features message;
+  for (auto* values : {&message.x, &message.y, &message.scale, &message.response}) {
+    values->reserve(features.size());
+  }
   for (const Keypoint& keypoint : features.keypoints) {
     message.x.push_back(keypoint.x);
     message.y.push_back(keypoint.y);
@@ -83,6 +86,8 @@ perennial_nav::LocalMap toMessage(const ActiveMap& map) {
   message.index = map.index;
   message.distance_m = map.distance_m;
   FeatureSet all;
+  all.reserve(map.alternatives.empty() ? 0
+                                       : map.alternatives.size() * map.alternatives.front().features.size());
   for (const ActiveMap::Alternative& alternative : map.alternatives) {
     for (std::size_t i = 0; i < alternative.features.size(); ++i) {
       all.add(alternative.features.keypoints[i], alternative.features.descriptors[i]);
@@ -115,6 +120,8 @@ ActiveMap fromMessage(const perennial_nav::LocalMap& message) {
   for (const std::uint32_t size : message.alternative_sizes) {
     ActiveMap::Alternative alternative;
     alternative.features.edges = edges;
+    alternative.features.reserve(size);
+    alternative.positions.reserve(size);
     for (const std::size_t end = next + size; next < end; ++next) {
       alternative.features.add(all.keypoints[next], all.descriptors[next]);
       alternative.positions.push_back(message.positions[next]);

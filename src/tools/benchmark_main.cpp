@@ -10,6 +10,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #ifdef PERENNIAL_HAS_DLIB
@@ -24,7 +25,9 @@
 #include "core/features/surf_detector.h"
 #include "core/simd/kernels.h"
 #include "perennial/core/feature_extractor.h"
+#include "perennial/core/place_finder.h"
 #include "perennial/core/registration.h"
+#include "perennial/testing/synthetic_place.h"
 
 namespace perennial {
 namespace {
@@ -146,6 +149,37 @@ void wholeFrame(benchmark::State& state, const Case& c, RegistrationMethod metho
   }
 }
 
+/// Local maps of a path on which every metre looks different, 0.2 m apart.
+const std::vector<std::shared_ptr<const ActiveMap>>& thousandLocalMaps() {
+  static const std::vector<std::shared_ptr<const ActiveMap>> maps = [] {
+    std::vector<std::shared_ptr<const ActiveMap>> result;
+    for (std::uint32_t index = 0; index < 1000; ++index) {
+      auto map = std::make_shared<ActiveMap>();
+      map->index = index;
+      map->distance_m = 0.2 * index;
+      map->alternatives.emplace_back();
+      map->alternatives.front().features = test_tools::SyntheticPlace(index / 5, 600).view(0.0, 0.0, 500);
+      result.push_back(std::move(map));
+    }
+    return result;
+  }();
+  return maps;
+}
+
+void findPlace(benchmark::State& state, const Case& c) {
+  const auto& maps = thousandLocalMaps();
+  const FeatureSet view =
+      test_tools::SyntheticPlace(123, 600).view(0.0, 40.0, static_cast<std::size_t>(c.features));
+  PlaceFinder finder;
+  for (auto _ : state) {
+    finder.seek(view);
+    for (const auto& map : maps) {
+      finder.consider(map);
+    }
+    benchmark::DoNotOptimize(finder.guess().distance_m);
+  }
+}
+
 void opencvOrb(benchmark::State& state, const Case& c) {
   const cv::Mat image = scene(c.size);
   const auto orb = cv::ORB::create(c.features);
@@ -228,6 +262,9 @@ void addAll() {
 #endif
       for (const Kernels* path : availableKernels()) {
         addPath({size, features, path});
+        if (size == cv::Size(752, 480) && features == 500) {
+          add("find_place_of_1000", {size, features, path}, findPlace);
+        }
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,32 +24,34 @@ FeatureSet featuresAt(unsigned place, double dx = 0.0, std::size_t features = 50
 
 /// Local maps 0.2 m apart; every place, 1 m long, has landmarks of its own, unless it repeats after `period`
 /// places.
-std::vector<ActiveMap> path(unsigned local_maps, unsigned period) {
-  std::vector<ActiveMap> maps;
+using Path = std::vector<std::shared_ptr<ActiveMap>>;
+
+Path path(unsigned local_maps, unsigned period) {
+  Path maps;
   for (unsigned i = 0; i < local_maps; ++i) {
-    ActiveMap map;
-    map.index = i;
-    map.distance_m = 0.2 * i;
-    map.alternatives.emplace_back();
-    map.alternatives.front().features = featuresAt(i / 5 % period);
+    auto map = std::make_shared<ActiveMap>();
+    map->index = i;
+    map->distance_m = 0.2 * i;
+    map->alternatives.emplace_back();
+    map->alternatives.front().features = featuresAt(i / 5 % period);
     maps.push_back(std::move(map));
   }
   return maps;
 }
 
-PlaceGuess find(const std::vector<ActiveMap>& maps, const FeatureSet& view, bool loop = false) {
+PlaceGuess find(const Path& maps, const FeatureSet& view, bool loop = false) {
   LocalisationSettings settings;
   settings.loop = loop;
   PlaceFinder finder(settings);
   finder.seek(view);
-  for (const ActiveMap& map : maps) {
+  for (const auto& map : maps) {
     finder.consider(map);
   }
   return finder.guess();
 }
 
 TEST(PlaceFinder, findsAPlaceAmongAThousandLocalMaps) {
-  const std::vector<ActiveMap> maps = path(1000, 1000);
+  const Path maps = path(1000, 1000);
   const FeatureSet view = featuresAt(123, 40.0);
   const auto begin = std::chrono::steady_clock::now();
   const PlaceGuess guess = find(maps, view);
@@ -76,9 +79,9 @@ TEST(PlaceFinder, refusesWhatLooksLikeTwoPlaces) {
 }
 
 TEST(PlaceFinder, aPlaceThatLooksTheSameForLongHidesNoOther) {
-  std::vector<ActiveMap> maps = path(400, 1000);
+  const Path maps = path(400, 1000);
   for (std::size_t i = 100; i < 250; ++i) {  // 30 m of them, and one metre elsewhere
-    maps[i].alternatives = maps[5 * 60].alternatives;
+    maps[i]->alternatives = maps[5 * 60]->alternatives;
   }
   const PlaceGuess guess = find(maps, featuresAt(60));
   EXPECT_FALSE(guess.sure);
@@ -92,7 +95,7 @@ TEST(PlaceFinder, theEndsOfALoopAreOnePlace) {
 }
 
 TEST(PlaceFinder, theEndsOfAnOpenPathThatLookAlikeAreAmbiguous) {
-  const std::vector<ActiveMap> maps = path(205, 40);
+  const Path maps = path(205, 40);
   const PlaceGuess guess = find(maps, featuresAt(0));
   EXPECT_FALSE(guess.sure) << guess.reason;
   EXPECT_NE(guess.reason.find("ambiguous"), std::string::npos) << guess.reason;
@@ -113,12 +116,12 @@ TEST(PlaceFinder, refusesAnEmptyViewAndAnEmptyPath) {
 }
 
 TEST(PlaceFinder, everySearchIsOnesOwn) {
-  const std::vector<ActiveMap> maps = path(100, 1000);
+  const Path maps = path(100, 1000);
   PlaceFinder finder;
   for (const unsigned place : {3U, 17U, 5U}) {
     finder.seek(featuresAt(place));
     EXPECT_EQ(finder.considered(), 0U);
-    for (const ActiveMap& map : maps) {
+    for (const auto& map : maps) {
       finder.consider(map);
     }
     EXPECT_EQ(finder.considered(), maps.size());
@@ -135,12 +138,16 @@ class TwoImages : public ::testing::Test {
     localisation_.look(featuresAt(place), travelled_m);
     EXPECT_EQ(localisation_.next(), 0U);
     while (!localisation_.complete()) {
-      localisation_.consider(maps_[localisation_.next()]);
+      if (localisation_.considerKept(30) == 0) {
+        localisation_.consider(*maps_[localisation_.next()]);
+        ++asked_for_;
+      }
     }
     return localisation_.conclude();
   }
 
-  const std::vector<ActiveMap> maps_ = path(100, 1000);
+  const Path maps_ = path(100, 1000);
+  int asked_for_ = 0;
   Localisation localisation_{{}, {}, 100};
 };
 
@@ -178,9 +185,41 @@ TEST_F(TwoImages, areRefusedByEither) {
   EXPECT_FALSE(second->sure);
 }
 
+TEST_F(TwoImages, askForEveryLocalMapOnce) {
+  EXPECT_FALSE(look(12, 3.0));
+  EXPECT_EQ(asked_for_, 100);
+  EXPECT_TRUE(look(12, 3.0));
+  EXPECT_EQ(asked_for_, 100);
+}
+
+TEST(Localisation, keepsTheBeginningOfAPathThatIsTooLong) {
+  constexpr unsigned kFeatures = 200;
+  constexpr unsigned kKept = Localisation::kMostKept / kFeatures;
+  constexpr unsigned kLocalMaps = kKept + 20;
+  ActiveMap map;
+  map.alternatives.emplace_back();
+  map.alternatives.front().features = featuresAt(1, 0.0, kFeatures);
+  Localisation localisation({}, {}, kLocalMaps);
+  for (const unsigned missing : {kLocalMaps, kLocalMaps - kKept}) {
+    unsigned asked_for = 0;
+    localisation.look(featuresAt(7, 0.0, 5), 0.0);
+    while (!localisation.complete()) {
+      const std::size_t next = localisation.next();
+      if (localisation.considerKept(1000) == 0) {
+        map.distance_m = static_cast<double>(next);
+        localisation.consider(map);
+        ++asked_for;
+      }
+    }
+    EXPECT_EQ(asked_for, missing);
+    EXPECT_EQ(localisation.considerKept(1000), 0U) << "all were considered";
+    localisation.conclude();
+  }
+}
+
 TEST_F(TwoImages, sayHowFarTheyAre) {
   localisation_.look(featuresAt(3), 0.0);
-  localisation_.consider(maps_[0]);
+  localisation_.consider(*maps_[0]);
   EXPECT_EQ(localisation_.progress(), "looking for the place: image 1 of 2, 1 of 100 local maps compared");
 }
 

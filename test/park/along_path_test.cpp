@@ -50,7 +50,7 @@ class AlongPath : public ClosedLoop {
     PlaceFinder finder(settings);
     finder.seek(FeatureExtractor(settings_.extraction).extract(frame.image));
     for (std::uint32_t i = 0; i < maps.file().size(); ++i) {
-      finder.consider(activate(maps.strategy(), maps.file().read(i), 0.0));
+      finder.consider(std::make_shared<ActiveMap>(activate(maps.strategy(), maps.file().read(i), 0.0)));
     }
     const PlaceGuess guess = finder.guess();
     std::printf("0.2 m beside the start: %s\n", guess.reason.c_str());

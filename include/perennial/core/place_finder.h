@@ -49,7 +49,7 @@ class PlaceFinder {
   /// Begins to seek a view; an earlier search is forgotten.
   void seek(FeatureSet view);
   /// The next local map of the path, in order of distance. Needs a view.
-  void consider(ActiveMap map);
+  void consider(std::shared_ptr<const ActiveMap> map);
   /// Local maps considered for this view.
   std::size_t considered() const { return considered_; }
   /// After the last local map.
@@ -59,7 +59,7 @@ class PlaceFinder {
   /// Successive local maps of about a metre.
   struct Stretch {
     struct Member {
-      ActiveMap map;
+      std::shared_ptr<const ActiveMap> map;
       int inliers = 0;
     };
     std::vector<Member> members;

@@ -121,6 +121,12 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
   return computed;
 }
 
+int filterRowAbove(const FilterRows& rows, const BoxFilter& filter, int begin, int count, float threshold,
+                   ColumnDifferences& differences, float* responses) noexcept {
+  differenceColumnsXxYy(rows, begin - filter.half(), begin + count + filter.half() + 1, differences);
+  return hessianRowAbove(rows, differences, filter, begin, count, threshold, responses);
+}
+
 void everyOther(const float* from, int count, float* to) noexcept {
   for (int i = 0; i < count; ++i) {
     to[i] = from[2 * i];

@@ -79,6 +79,11 @@ void hessianRow(const ColumnDifferences& differences, const BoxFilter& filter, i
 int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences, const BoxFilter& filter,
                     int begin, int count, float threshold, float* responses) noexcept;
 
+/// The same without column differences, which are kept in `differences` or not at all. Up to
+/// IntegralImage::kReadBeyond columns behind the last one of `rows` may be read.
+int filterRowAbove(const FilterRows& rows, const BoxFilter& filter, int begin, int count, float threshold,
+                   ColumnDifferences& differences, float* responses) noexcept;
+
 /// to[i] = from[2 i], for `count` of them; `to` may be `from`. from[2 count - 1] may be read.
 void everyOther(const float* from, int count, float* to) noexcept;
 

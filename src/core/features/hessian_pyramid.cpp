@@ -129,19 +129,17 @@ void HessianPyramid::filterRow(const IntegralImage& integral, ResponseLayer& lay
 
 void HessianPyramid::filterPixels(const IntegralImage& integral, ResponseLayer& layer, int y, int first_x,
                                   int count, float* responses) {
-  const int begin = first_x - layer.filter.half();
-  const int end = first_x + count + layer.filter.half() + 1;
   const Kernels& use = kernels();
   const FilterRows rows(integral, layer.filter, y);
   if (threshold_ == kBelowThreshold || layer.dense_rows > 0 || !use.looks_first) {
     layer.dense_rows = std::max(0, layer.dense_rows - 1);
-    use.difference_columns(rows, begin, end, differences_);
+    use.difference_columns(rows, first_x - layer.filter.half(), first_x + count + layer.filter.half() + 1,
+                           differences_);
     use.hessian_row(differences_, layer.filter, first_x, count, responses);
     return;
   }
-  use.difference_columns_xx_yy(rows, begin, end, differences_);
   const int computed =
-      use.hessian_row_above(rows, differences_, layer.filter, first_x, count, threshold_, responses);
+      use.filter_row_above(rows, layer.filter, first_x, count, threshold_, differences_, responses);
   if (2 * computed > count) {
     layer.dense_rows = kDenseRows;
   }

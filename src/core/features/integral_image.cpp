@@ -20,7 +20,7 @@ void IntegralImage::compute(const cv::Mat& image) {
   rows_ = image.rows;
   columns_ = image.cols;
   stride_ = wholeLines<std::uint32_t>(static_cast<std::size_t>(columns_) + 1);
-  sums_.resize(stride_ * (static_cast<std::size_t>(rows_) + 1));
+  sums_.resize(stride_ * (static_cast<std::size_t>(rows_) + 1) + kReadBeyond);
   std::fill_n(sums_.begin(), stride_, 0U);
   const auto integral_row = kernels().integral_row;
   for (int y = 0; y < rows_; ++y) {

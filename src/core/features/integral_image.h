@@ -21,7 +21,10 @@ class IntegralImage {
 
   int rows() const { return rows_; }        ///< of the image
   int columns() const { return columns_; }  ///< of the image
-  /// Begins a line of the cache; the rest of its last line may be read, but means nothing.
+  /// So many sums behind the end of a row may be read, but mean nothing.
+  static constexpr std::size_t kReadBeyond = 64;
+
+  /// Begins a line of the cache.
   const std::uint32_t* row(int y) const { return sums_.data() + static_cast<std::size_t>(y) * stride_; }
 
  private:

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <boost/crc.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,15 +20,12 @@ class RowChecksum {
     add(static_cast<std::uint32_t>(text.size()));
     return addBytes(text.data(), text.size());
   }
-  RowChecksum& addBytes(const void* bytes, std::size_t size) {
-    crc_.process_bytes(bytes, size);
-    return *this;
-  }
+  RowChecksum& addBytes(const void* bytes, std::size_t size);
 
-  std::uint32_t value() const { return crc_.checksum(); }
+  std::uint32_t value() const { return ~remainder_; }
 
  private:
-  boost::crc_32_type crc_;
+  std::uint32_t remainder_ = 0xFFFFFFFFU;
 };
 
 }  // namespace perennial

@@ -5,7 +5,7 @@ namespace perennial {
 void DescriptorTable::resize(std::size_t size) {
   size_ = size;
   stride_ = size;
-  words_.resize(kWords * stride_);
+  words_.resize(kWords * stride_ + kReadBeyond);
 }
 
 void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,

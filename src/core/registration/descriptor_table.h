@@ -14,6 +14,7 @@ namespace perennial {
 class DescriptorTable {
  public:
   static constexpr std::size_t kWords = Descriptor::kBits / 64;
+  static constexpr std::size_t kReadBeyond = 32;
 
   /// Memory is kept and used again.
   void resize(std::size_t size);
@@ -24,7 +25,7 @@ class DescriptorTable {
   }
 
   std::size_t size() const { return size_; }
-  /// Word `w` of all descriptors.
+  /// Word `w` of all descriptors. Up to kReadBeyond words behind the last one may be read, but mean nothing.
   const std::uint64_t* word(std::size_t w) const { return words_.data() + w * stride_; }
 
  private:

@@ -35,29 +35,40 @@ void sortView(const FeatureSet& view, RegistrationWorkspace::Buffers& buffers) {
   }
 }
 
+/// How many of ascending values satisfy `before`, which those at the front do. Without a branch: where the
+/// gate of a map feature begins cannot be predicted.
+template <class Before>
+std::size_t countBefore(const std::vector<float>& ascending, const Before& before) {
+  if (ascending.empty()) {
+    return 0;
+  }
+  const float* first = ascending.data();
+  for (std::size_t left = ascending.size(); left > 1;) {
+    const std::size_t half = left / 2;
+    first += before(first[half - 1]) ? half : 0;
+    left -= half;
+  }
+  return static_cast<std::size_t>(first - ascending.data()) + (before(*first) ? 1 : 0);
+}
+
 void findNeighbours(const FeatureSet& map, const FeatureSet& view, double gate_px,
                     RegistrationWorkspace::Buffers& buffers) {
   sortView(view, buffers);
   buffers.of_map.assign(map.size(), {});
   buffers.of_view.assign(view.size(), {});
-  buffers.distances.resize(view.size());
-  const auto& y = buffers.sorted_y;
-  const auto hamming_distances = kernels().hamming_distances;
+  buffers.distances.resize(view.size() + kOfferBeyond);
+  buffers.bounds.assign(view.size() + kOfferBeyond, NeighbourList::kNoBound);
+  const Kernels& use = kernels();
   for (std::size_t i = 0; i < map.size(); ++i) {
     const double here = map.keypoints[i].y;
-    const auto first =
-        std::lower_bound(y.begin(), y.end(), here - gate_px, [](float a, double b) { return a < b; });
-    const auto last =
-        std::upper_bound(first, y.end(), here + gate_px, [](double a, float b) { return a < b; });
-    const auto begin = static_cast<std::size_t>(first - y.begin());
-    const auto end = static_cast<std::size_t>(last - y.begin());
-    hamming_distances(map.descriptors[i], buffers.view, begin, end, buffers.distances.data());
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint16_t distance = buffers.distances[place - begin];
-      const std::uint32_t j = buffers.by_y[place];
-      buffers.of_map[i].offer(distance, j);
-      buffers.of_view[j].offer(distance, static_cast<std::uint32_t>(i));
-    }
+    const std::size_t begin = countBefore(buffers.sorted_y, [&](double y) { return y < here - gate_px; });
+    const std::size_t end = countBefore(buffers.sorted_y, [&](double y) { return y <= here + gate_px; });
+    use.hamming_distances(map.descriptors[i], buffers.view, begin, end, buffers.distances.data());
+    const std::size_t count = end - begin;
+    std::fill_n(buffers.distances.data() + count, kOfferBeyond, NeighbourList::kNoBound);
+    use.offer_row(
+        {buffers.distances.data(), count, static_cast<std::uint32_t>(i), buffers.by_y.data() + begin},
+        buffers.of_map[i], buffers.of_view.data(), buffers.bounds.data() + begin);
   }
 }
 
@@ -65,7 +76,8 @@ void castVotes(const FeatureSet& map, const FeatureSet& view, RegistrationWorksp
   buffers.votes.clear();
   for (std::size_t i = 0; i < map.size(); ++i) {
     const NeighbourList& nearest = buffers.of_map[i];
-    for (std::size_t a = 0; a < nearest.size(); ++a) {
+    const std::size_t size = nearest.size();
+    for (std::size_t a = 0; a < size; ++a) {
       const std::uint32_t j = nearest[a].index;
       const std::size_t b = buffers.of_view[j].rankOf(static_cast<std::uint32_t>(i));
       if (b < NeighbourList::kCapacity) {

@@ -92,25 +92,28 @@ void VoteProfile::collect(const std::vector<Vote>& votes, double reach_px) {
     largest = std::max(largest, std::abs(vote.displacement_px));
   }
   half_ = static_cast<int>(std::lround(largest / kBin_px)) + 1;
-  bins_.assign(static_cast<std::size_t>(2 * half_ + 1), 0.0);
+  bins_.assign(static_cast<std::size_t>(2 * (half_ + kReach) + 1), 0.0);
   for (const Vote& vote : votes) {
-    bins_[static_cast<std::size_t>(std::lround(vote.displacement_px / kBin_px) + half_)] += vote.weight;
+    bins_[static_cast<std::size_t>(std::lround(vote.displacement_px / kBin_px) + half_ + kReach)] +=
+        vote.weight;
   }
 }
 
 void VoteProfile::smooth() {
   static const Kernel kernel = gaussian();
-  const auto size = static_cast<int>(bins_.size());
-  smoothed_.resize(bins_.size());
+  smoothed_.resize(static_cast<std::size_t>(2 * half_ + 1));
+  const double* const bins = bins_.data() + kReach;
+  double* const smoothed = smoothed_.data();
+  const int size = 2 * half_ + 1;
   for (int i = 0; i < size; ++i) {
-    double sum = kernel[0] * bins_[static_cast<std::size_t>(i)];
-    for (int k = 1; k <= kReach; ++k) {
+    smoothed[i] = kernel[0] * bins[i];
+  }
+  for (int k = 1; k <= kReach; ++k) {
+    const double weight = kernel[static_cast<std::size_t>(k)];
+    for (int i = 0; i < size; ++i) {
       // Both sides at once: a mirrored profile is then smoothed to the mirrored result, to the bit.
-      const double before = i - k >= 0 ? bins_[static_cast<std::size_t>(i - k)] : 0.0;
-      const double after = i + k < size ? bins_[static_cast<std::size_t>(i + k)] : 0.0;
-      sum += kernel[static_cast<std::size_t>(k)] * (before + after);
+      smoothed[i] += weight * (bins[i - k] + bins[i + k]);
     }
-    smoothed_[static_cast<std::size_t>(i)] = sum;
   }
 }
 

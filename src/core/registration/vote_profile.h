@@ -41,8 +41,8 @@ class VoteProfile {
   void add(const EdgeCorrelation& edges);
   int highest() const;
 
-  int half_ = 0;  ///< bins on either side of the middle one
-  std::vector<double> bins_;
+  int half_ = 0;              ///< bins on either side of the middle one
+  std::vector<double> bins_;  ///< of votes, and empty ones as far as the kernel reaches
   std::vector<double> smoothed_;
 };
 

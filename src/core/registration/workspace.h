@@ -17,6 +17,7 @@ struct RegistrationWorkspace::Buffers {
   std::vector<std::uint16_t> distances;
 
   // Robust registration only.
+  std::vector<std::uint16_t> bounds;   ///< see offerRow()
   std::vector<std::uint32_t> by_y;     ///< view features in order of their y
   std::vector<float> sorted_y;         ///< and that y
   std::vector<NeighbourList> of_map;   ///< nearest view features of each map feature

@@ -9,6 +9,7 @@
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
 #include "core/registration/edge_correlation.h"
+#include "core/registration/neighbour_list.h"
 #include "core/simd/vector_kernels.h"
 
 namespace perennial {
@@ -19,10 +20,9 @@ void scalarHessianRow(const ColumnDifferences& differences, const BoxFilter& fil
   hessianRow(differences, filter, begin, 1, count, responses);
 }
 
-constexpr Kernels kScalar{"scalar",        differenceColumns, false,          differenceColumnsXxYy,
-                          hessianRowAbove, scalarHessianRow,  everyOther,     nextPeak,
-                          integralRow,     boxSumRow,         orientationRow, hammingDistances,
-                          smallestTwo,     productSum};
+constexpr Kernels kScalar{"scalar",         differenceColumns, false,       filterRowAbove, scalarHessianRow,
+                          everyOther,       nextPeak,          integralRow, boxSumRow,      orientationRow,
+                          hammingDistances, smallestTwo,       offerRow,    productSum};
 
 std::vector<const Kernels*> findAvailable() {
   std::vector<const Kernels*> available{&kScalar};

@@ -11,6 +11,8 @@ struct ColumnDifferences;
 class DescriptorTable;
 struct Descriptor;
 struct FilterRows;
+class NeighbourList;
+struct OfferedRow;
 struct SmallestTwo;
 
 /// The loops that take the time, for one instruction set. Every path gives the same results to the last bit;
@@ -20,15 +22,12 @@ struct Kernels {
 
   /// See differenceColumns() in box_hessian.h.
   void (*difference_columns)(const FilterRows& rows, int begin, int end, ColumnDifferences& differences);
-  /// Whether hessian_row_above is faster than hessian_row: a compiler makes more of a loop that leaves
-  /// nothing out.
+  /// Whether filter_row_above is faster than difference_columns and hessian_row: a compiler makes more of a
+  /// loop that leaves nothing out.
   bool looks_first;
-  /// See differenceColumnsXxYy() in box_hessian.h.
-  void (*difference_columns_xx_yy)(const FilterRows& rows, int begin, int end,
-                                   ColumnDifferences& differences);
-  /// See hessianRowAbove() in box_hessian.h.
-  int (*hessian_row_above)(const FilterRows& rows, const ColumnDifferences& differences,
-                           const BoxFilter& filter, int begin, int count, float threshold, float* responses);
+  /// See filterRowAbove() in box_hessian.h.
+  int (*filter_row_above)(const FilterRows& rows, const BoxFilter& filter, int begin, int count,
+                          float threshold, ColumnDifferences& differences, float* responses);
   /// See hessianRow() in box_hessian.h, with a step of 1.
   void (*hessian_row)(const ColumnDifferences& differences, const BoxFilter& filter, int begin, int count,
                       float* responses);
@@ -51,6 +50,9 @@ struct Kernels {
                             std::size_t end, std::uint16_t* distances);
   /// See smallestTwo() in descriptor_table.h.
   SmallestTwo (*smallest_two)(const std::uint16_t* distances, std::size_t count);
+  /// See offerRow() in neighbour_list.h.
+  void (*offer_row)(const OfferedRow& row, NeighbourList& of_map, NeighbourList* of_view,
+                    std::uint16_t* bounds);
   /// See productSum() in edge_correlation.h; `count` must be a multiple of kProductBlock.
   std::int32_t (*product_sum)(const std::int16_t* a, const std::int16_t* b, std::size_t stride,
                               std::size_t rows, std::size_t count);

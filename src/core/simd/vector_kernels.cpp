@@ -4,6 +4,7 @@
 #include "core/simd/vector_kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/features/box_hessian.h"
 #include "core/features/box_sums.h"
@@ -12,6 +13,7 @@
 #include "core/features/orientation_image.h"
 #include "core/registration/descriptor_table.h"
 #include "core/registration/edge_correlation.h"
+#include "core/registration/neighbour_list.h"
 
 // Native population counts and the like, where there are any.
 #define HWY_WANT_AVX3_DL
@@ -140,6 +142,34 @@ int hessianRowAbove(const FilterRows& rows, const ColumnDifferences& differences
                                             responses + i);
 }
 
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+#include "core/simd/fused_hessian-inl.h"
+#define PERENNIAL_FUSED(lobe) \
+  case lobe:                  \
+    return fusedRowAbove<lobe>(rows, count, threshold, responses)
+#endif
+
+int filterRowAbove(const FilterRows& rows, const BoxFilter& filter, int begin, int count, float threshold,
+                   ColumnDifferences& differences, float* responses) {
+#ifdef PERENNIAL_FUSED
+  if (begin == filter.half()) {
+    switch (filter.lobe) {
+      PERENNIAL_FUSED(3);
+      PERENNIAL_FUSED(5);
+      PERENNIAL_FUSED(7);
+      PERENNIAL_FUSED(9);
+      PERENNIAL_FUSED(11);
+      default:
+        break;
+    }
+  }
+#endif
+  HWY_NAMESPACE::differenceColumnsXxYy(rows, begin - filter.half(), begin + count + filter.half() + 1,
+                                       differences);
+  return HWY_NAMESPACE::hessianRowAbove(rows, differences, filter, begin, count, threshold, responses);
+}
+#undef PERENNIAL_FUSED
+
 void everyOther(const float* from, int count, float* to) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   int i = 0;
@@ -246,22 +276,33 @@ void orientationRow(const std::uint16_t* up, const std::uint16_t* here, const st
   perennial::orientationRow(up + i, here + i, down + i, count - i, cosine + i, sine + i);
 }
 
+/// To as many descriptors as there are lanes, from the j-th on.
+template <class U16Tag>
+HWY_INLINE hn::Vec<U16Tag> distancesTo(const Descriptor& descriptor, const DescriptorTable& table,
+                                       std::size_t j, U16Tag u16) {
+  const hn::Rebind<std::uint32_t, decltype(kU64)> u32;
+  auto sum = hn::Zero(kU64);
+  for (std::size_t w = 0; w < DescriptorTable::kWords; ++w) {
+    const auto word = hn::Set(kU64, descriptor.words[w]);
+    sum = hn::Add(sum, hn::PopulationCount(hn::Xor(word, hn::LoadU(kU64, table.word(w) + j))));
+  }
+  return hn::DemoteTo(u16, hn::BitCast(hn::RebindToSigned<decltype(u32)>(), hn::TruncateTo(u32, sum)));
+}
+
 void hammingDistances(const Descriptor& descriptor, const DescriptorTable& table, std::size_t begin,
                       std::size_t end, std::uint16_t* HWY_RESTRICT distances) {
   const hn::Rebind<std::uint16_t, hn::ScalableTag<std::uint64_t>> u16;
-  const hn::Rebind<std::uint32_t, hn::ScalableTag<std::uint64_t>> u32;
+  static_assert(hn::MaxLanes(kU64) <= DescriptorTable::kReadBeyond, "the last vector ends behind the table");
   const std::size_t lanes = hn::Lanes(kU64);
   std::size_t j = begin;
   for (; j + lanes <= end; j += lanes) {
-    auto sum = hn::Zero(kU64);
-    for (std::size_t w = 0; w < DescriptorTable::kWords; ++w) {
-      const auto word = hn::Set(kU64, descriptor.words[w]);
-      sum = hn::Add(sum, hn::PopulationCount(hn::Xor(word, hn::LoadU(kU64, table.word(w) + j))));
-    }
-    const auto narrow = hn::BitCast(hn::RebindToSigned<decltype(u32)>(), hn::TruncateTo(u32, sum));
-    hn::StoreU(hn::DemoteTo(u16, narrow), u16, distances + (j - begin));
+    hn::StoreU(distancesTo(descriptor, table, j, u16), u16, distances + (j - begin));
   }
-  perennial::hammingDistances(descriptor, table, j, end, distances + (j - begin));
+  if (j < end) {
+    HWY_ALIGN std::uint16_t last[hn::MaxLanes(u16)];
+    hn::StoreU(distancesTo(descriptor, table, j, u16), u16, last);
+    std::copy_n(last, end - j, distances + (j - begin));
+  }
 }
 
 std::int32_t productSum(const std::int16_t* a, const std::int16_t* b, std::size_t stride, std::size_t rows,
@@ -300,6 +341,64 @@ SmallestTwo smallestTwo(const std::uint16_t* distances, std::size_t count) {
   return smallest;
 }
 
+/// So many lanes at most that a mask has a bit for each.
+const hn::CappedTag<std::uint16_t, 64> kU16;
+using U16 = hn::Vec<hn::CappedTag<std::uint16_t, 64>>;
+
+template <class Mask>
+HWY_INLINE std::uint64_t bitsOf(Mask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kU16, mask, bytes);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes, sizeof(bits));
+  return bits;
+}
+
+/// Takes the lowest of the set bits away.
+HWY_INLINE std::size_t takeLowest(std::uint64_t& bits) {
+  const std::size_t lowest = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+  bits &= bits - 1;
+  return lowest;
+}
+
+/// So many of the lanes, and perhaps others, are not above what is returned: the smallest in turn.
+HWY_INLINE U16 boundOfSmallest(U16 lanes, std::size_t wanted) {
+  const U16 none = hn::Set(kU16, NeighbourList::kNoBound);
+  for (; wanted > 1; --wanted) {
+    lanes = hn::IfThenElse(hn::Eq(lanes, hn::MinOfLanes(kU16, lanes)), none, lanes);
+  }
+  return hn::MinOfLanes(kU16, lanes);
+}
+
+void offerRow(const OfferedRow& row, NeighbourList& of_map, NeighbourList* HWY_RESTRICT of_view,
+              std::uint16_t* HWY_RESTRICT bounds) {
+  const std::size_t lanes = hn::Lanes(kU16);
+  U16 least = hn::Set(kU16, NeighbourList::kNoBound);
+  for (std::size_t begin = 0; begin < row.count; begin += lanes) {
+    const U16 distances = hn::LoadU(kU16, row.distances + begin);
+    least = hn::Min(least, distances);
+    std::uint64_t nearer = bitsOf(hn::Lt(distances, hn::LoadU(kU16, bounds + begin)));
+    while (nearer != 0) {
+      const std::size_t place = begin + takeLowest(nearer);
+      NeighbourList& list = of_view[row.view_indices[place]];
+      list.offer(row.distances[place], row.index);
+      bounds[place] = list.bound();
+    }
+  }
+  // The nearest of each lane: the fifth of these is not below the fifth of all.
+  const U16 bound = boundOfSmallest(least, NeighbourList::kCapacity);
+  for (std::size_t begin = 0; begin < row.count; begin += lanes) {
+    const U16 distances = hn::LoadU(kU16, row.distances + begin);
+    std::uint64_t near = bitsOf(hn::Eq(distances, hn::Min(distances, bound)));  // not above it
+    while (near != 0) {
+      const std::size_t place = begin + takeLowest(near);
+      if (place < row.count) {
+        of_map.offer(row.distances[place], row.view_indices[place]);
+      }
+    }
+  }
+}
+
 const Kernels* vectorKernels() {
   static constexpr const char* kName = HWY_TARGET == HWY_AVX3_DL ? "avx512dl"
                                        : HWY_TARGET == HWY_AVX3  ? "avx512"
@@ -308,10 +407,9 @@ const Kernels* vectorKernels() {
                                        : HWY_TARGET == HWY_SSSE3 ? "ssse3"
                                        : HWY_TARGET == HWY_NEON  ? "neon"
                                                                  : "baseline";
-  static constexpr Kernels kTable{kName,           differenceColumns, true,           differenceColumnsXxYy,
-                                  hessianRowAbove, hessianRow,        everyOther,     nextPeak,
-                                  integralRow,     boxSumRow,         orientationRow, hammingDistances,
-                                  smallestTwo,     productSum};
+  static constexpr Kernels kTable{
+      kName,       differenceColumns, true,           filterRowAbove,   hessianRow,  everyOther, nextPeak,
+      integralRow, boxSumRow,         orientationRow, hammingDistances, smallestTwo, offerRow,   productSum};
   return &kTable;
 }
 

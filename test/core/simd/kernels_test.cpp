@@ -15,6 +15,7 @@
 #include "core/features/synthetic_images.h"
 #include "core/registration/descriptor_table.h"
 #include "core/registration/edge_correlation.h"
+#include "core/registration/neighbour_list.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/registration.h"
 
@@ -68,21 +69,20 @@ TEST_P(EachPath, leavesOutOnlyWhatStaysBelowTheThreshold) {
   ColumnDifferences some;
   all.resize(columns + 1);
   some.resize(columns + 1);
-  for (const int lobe : {3, 7, 13}) {
+  for (const int lobe : {3, 5, 7, 9, 11, 13}) {
     const BoxFilter filter{lobe};
     const int count = columns - 2 * filter.half();
     const FilterRows rows(integral, filter, 45);
     std::vector<float> expected(static_cast<std::size_t>(count));
     differenceColumns(rows, 0, columns + 1, all);
     hessianRow(all, filter, filter.half(), 1, count, expected.data());
-    kernels().difference_columns_xx_yy(rows, 0, columns + 1, some);
     std::vector<float> sorted = expected;
     std::sort(sorted.begin(), sorted.end());
     for (const float threshold :
          {sorted.front(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], 1.0F}) {
       std::vector<float> found(static_cast<std::size_t>(count) + 1, 7.0F);
       const int computed =
-          kernels().hessian_row_above(rows, some, filter, filter.half(), count, threshold, found.data());
+          kernels().filter_row_above(rows, filter, filter.half(), count, threshold, some, found.data());
       EXPECT_EQ(found.back(), 7.0F) << "nothing is written beyond";
       found.pop_back();
       EXPECT_EQ(count - std::count(found.begin(), found.end(), kBelowThreshold), computed);
@@ -180,6 +180,64 @@ TEST_P(EachPath, distancesAreThoseOfTwoDescriptors) {
       EXPECT_EQ(distances[j - begin], hammingDistance(one, others[j]));
     }
     EXPECT_EQ(distances.back(), 9999) << "nothing is written beyond";
+  }
+}
+
+/// Lists of nearest neighbours, as offering one by one makes them.
+class Neighbours {
+ public:
+  Neighbours(std::size_t rows, std::size_t columns)
+      : of_map(rows), of_view(columns), bounds(columns + kOfferBeyond, NeighbourList::kNoBound) {}
+
+  bool operator==(const Neighbours& other) const {
+    return same(of_map, other.of_map) && same(of_view, other.of_view);
+  }
+
+  std::vector<NeighbourList> of_map;
+  std::vector<NeighbourList> of_view;
+  std::vector<std::uint16_t> bounds;
+
+ private:
+  static bool same(const std::vector<NeighbourList>& a, const std::vector<NeighbourList>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), [](const NeighbourList& p, const NeighbourList& q) {
+      bool equal = p.size() == q.size();
+      for (std::size_t rank = 0; equal && rank < p.size(); ++rank) {
+        equal = p[rank].distance == q[rank].distance && p[rank].index == q[rank].index;
+      }
+      return equal;
+    });
+  }
+};
+
+TEST_P(EachPath, theNearestAreThoseOfferedOneByOne) {
+  std::mt19937 random(8);
+  for (const std::size_t columns : {1U, 4U, 6U, 33U, 150U}) {
+    std::vector<std::uint32_t> indices(columns);
+    std::iota(indices.begin(), indices.end(), 0U);
+    std::shuffle(indices.begin(), indices.end(), random);
+    for (const unsigned range : {2U, 30U, 257U}) {  // many equal ones, or few
+      const std::size_t rows = 40;
+      Neighbours found(rows, columns);
+      Neighbours expected(rows, columns);
+      for (std::size_t row = 0; row < rows; ++row) {
+        const std::size_t begin = random() % columns;
+        const std::size_t count = random() % (columns - begin + 1);
+        std::vector<std::uint16_t> distances(count + kOfferBeyond, NeighbourList::kNoBound);
+        std::generate_n(distances.begin(), count,
+                        [&] { return static_cast<std::uint16_t>(random() % range); });
+        const auto index = static_cast<std::uint32_t>(row);
+        kernels().offer_row({distances.data(), count, index, indices.data() + begin}, found.of_map[row],
+                            found.of_view.data(), found.bounds.data() + begin);
+        for (std::size_t i = 0; i < count; ++i) {
+          expected.of_map[row].offer(distances[i], indices[begin + i]);
+          expected.of_view[indices[begin + i]].offer(distances[i], index);
+        }
+      }
+      EXPECT_TRUE(found == expected) << columns << " " << range;
+      for (std::size_t i = 0; i < columns; ++i) {
+        EXPECT_EQ(found.bounds[i], expected.of_view[indices[i]].bound());
+      }
+    }
   }
 }
 
