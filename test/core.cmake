@@ -34,6 +34,9 @@ perennial_gtest(registration_test
   core/registration/robust_registration_test.cpp
   core/registration/votes_test.cpp
 )
+perennial_gtest(real_images_test core/real_images_test.cpp
+  DEFINITIONS PERENNIAL_DEFAULT_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
+)
 perennial_gtest(pairs_evaluation_test
   core/disturbance_test.cpp
   core/pairs_evaluation_test.cpp
