@@ -1,5 +1,6 @@
 # Tests of what needs ROS: first without a master, then the real nodes.
 perennial_gtest(lockstep_gate_test ros/lockstep_gate_test.cpp LIBRARIES perennial_ros)
+perennial_gtest(focal_length_test ros/focal_length_test.cpp LIBRARIES perennial_ros)
 perennial_gtest(strategy_conformance_test ros/strategy_conformance_test.cpp
   LIBRARIES ${catkin_LIBRARIES}
   DEPENDS perennial_strategies

@@ -118,7 +118,7 @@ std::string MotionInterlock::emergency() const {
   if (emergency_engaged_[0] || emergency_engaged_[1]) {
     return "the emergency stop is engaged";
   }
-  return emergency_latched_ ? "the emergency stop has been released; waiting for the service resume" : "";
+  return emergency_latched_ ? "there was an emergency stop; waiting for the service resume" : "";
 }
 
 std::string MotionInterlock::deadManProblem(double now_s) const {

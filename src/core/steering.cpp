@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace perennial {
-namespace {
-
-double finite(double value) { return std::isfinite(value) ? value : 0.0; }
-
-}  // namespace
 
 SteeringSettings SteeringSettings::load(ParameterReader& reader) {
   SteeringSettings settings;
@@ -35,8 +30,11 @@ Velocity steer(const Velocity& taught, std::optional<double> displacement_px,
     correction = focal_length_px ? settings.gain_per_rad * std::atan(*displacement_px / *focal_length_px)
                                  : settings.gain_per_px * *displacement_px;
   }
-  const double limited = std::clamp(finite(correction), -settings.max_correction, settings.max_correction);
-  return {finite(taught.forward), finite(taught.angular) + limited, finite(taught.flipper)};
+  if (!std::isfinite(taught.forward + taught.angular + taught.flipper + correction)) {
+    return {};
+  }
+  const double limited = std::clamp(correction, -settings.max_correction, settings.max_correction);
+  return {taught.forward, taught.angular + limited, taught.flipper};
 }
 
 }  // namespace perennial

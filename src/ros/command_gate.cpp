@@ -108,6 +108,15 @@ void CommandGate::setEmergencyStop(EmergencyStop source, bool engaged) {
   change([&] { interlock_.setEmergencyStop(source, engaged); });
 }
 
+void CommandGate::latchEmergencyStop() {
+  change([&] { interlock_.latchEmergencyStop(); });
+}
+
+bool CommandGate::emergencyStopped() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return interlock_.emergencyStopped();
+}
+
 bool CommandGate::resume() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return interlock_.resume();

@@ -32,9 +32,6 @@ void NavigationReporter::state(const ros::Time& stamp, const NavigationStatus& s
                                const geometry_msgs::Twist& command, const RepeatRun* run,
                                const NavigationStep* step) {
   const std::string mode = nameOf(status.mode);
-  if (state_.traversal != (run != nullptr ? run->number : 0)) {
-    log_.begin();
-  }
   if (mode != state_.state) {
     log(mode, status.reason);
   }

@@ -20,6 +20,8 @@ constexpr std::size_t kImagesKept = 30;
 /// Real time to wait for simulated time to begin.
 const ros::WallDuration kClockPatience(5.0);
 const ros::Duration kWatchPeriod(0.1);
+/// Images or odometry that may be under way when a goal comes.
+constexpr std::size_t kOnTheirWay = 5;
 /// Local maps asked for at once when a person backs the robot.
 constexpr std::size_t kFetchedBehind = 20;
 
@@ -38,6 +40,7 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
                   [this](const auto& image, const auto& place) { onPlaceSought(image, place); },
                   [this](const std::string& reason) { fail(reason); }}),
       gate_(nh_, settings_.sensor_timeout_s, settings_.limits, settings_.interlock),
+      emergency_memory_(gate_, nh_),
       inputs_(gate_, settings_.interlock),
       reporter_(nh_, private_nh),
       live_settings_(private_nh, settings_.repeat, [this] { return run_ ? run_->session.get() : nullptr; }),
@@ -93,6 +96,7 @@ void RepeatNavigator::startRun(const perennial_nav::RepeatGoal& goal) {
   image_watch_.reset();
   gate_.begin();
   supervisor_.start(now.toSec());
+  reporter_.beginTraversal();
   publishState(now);
   run_->begun_m = goal.localise ? 0.0 : goal.start_distance_m;
   beginTraversal(run_->begun_m, std::nullopt, now);
@@ -123,17 +127,19 @@ void RepeatNavigator::beginTraversal(double start_m, std::optional<double> trave
 
 void RepeatNavigator::onPreempt() {
   if (run_) {
-    server_.setPreempted(endRun(false, "cancelled"), "cancelled");
+    gate_.stop();
     supervisor_.rest("cancelled; waiting for a goal");
     publishState(ros::Time::now());
+    server_.setPreempted(endRun(false, "cancelled"), "cancelled");
   }
 }
 
 void RepeatNavigator::fail(const std::string& reason) {
   ROS_ERROR("repeat failed: %s", reason.c_str());
-  server_.setAborted(endRun(false, reason), reason);
+  gate_.stop();
   supervisor_.fail(reason);
-  publishState(ros::Time::now());
+  publishState(ros::Time::now());  // before the run ends, for which map_manager is waited for
+  server_.setAborted(endRun(false, reason), reason);
 }
 
 perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::string& reason) {
@@ -169,6 +175,7 @@ perennial_nav::RepeatResult RepeatNavigator::endRun(bool success, const std::str
 
 void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
   if (run_ && isFromBefore(image->header)) {
+    ++run_->images_from_before;
     acknowledge(image);
     return;
   }
@@ -186,7 +193,11 @@ void RepeatNavigator::onImage(const sensor_msgs::ImageConstPtr& image) {
 }
 
 void RepeatNavigator::onOdometry(const nav_msgs::OdometryConstPtr& message) {
-  if (!run_ || isFromBefore(message->header)) {
+  if (!run_) {
+    return;
+  }
+  if (isFromBefore(message->header)) {
+    ++run_->odometry_from_before;
     return;
   }
   if (!settings_.every_image && odometry_watch_.restarted(message->header.seq)) {
@@ -222,15 +233,24 @@ bool RepeatNavigator::isFromBefore(const std_msgs::Header& header) const {
 
 std::string RepeatNavigator::missing() const {
   if (images_.empty()) {
-    return "image";
+    return missingSinceGoal("image", run_->images_from_before);
   }
   const auto newest = odometer_.newest();
   const bool has_odometry = newest && newest->stamp_s >= images_.front()->header.stamp.toSec();
-  return has_odometry ? "local map" : "odometry";
+  return has_odometry ? "local map" : missingSinceGoal("odometry", run_->odometry_from_before);
+}
+
+std::string RepeatNavigator::missingSinceGoal(const std::string& what, std::size_t from_before) const {
+  // A few were on their way when the goal came.
+  return from_before <= kOnTheirWay
+             ? what
+             : what + " stamped after the goal (" + std::to_string(from_before) +
+                   " were stamped before it: do the driver's clock and this machine's agree?)";
 }
 
 void RepeatNavigator::onTimer() {
   reporter_.update(images_.dropped(), ignored_maps_, camera_info_ != nullptr);
+  emergency_memory_.update();
   if (!run_) {
     return;
   }
@@ -439,6 +459,7 @@ void RepeatNavigator::completeTraversal(const ros::Time& stamp) {
     return;
   }
   ++run.number;
+  reporter_.beginTraversal();
   beginTraversal(std::min(overshoot_m, run.session->length()), run.travelled_m, stamp);
 }
 

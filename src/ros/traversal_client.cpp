@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "perennial/core/error.h"
+#include "perennial/ros/bounded_call.h"
 #include "perennial/ros/conversions.h"
 #include "perennial_nav/BeginTraversal.h"
 #include "perennial_nav/EndTraversal.h"
@@ -14,11 +15,13 @@ namespace {
 /// A manager that was started just now is connected within a fraction of a second. Real time.
 const ros::WallDuration kListenerPatience(5.0);
 const ros::WallDuration kListenerPoll(0.05);
+/// Of the manager's answers, real time. A map of an older format is migrated when it is opened.
+const ros::WallDuration kBeginPatience(300.0);
+const ros::WallDuration kPatience(20.0);
 
 }  // namespace
 
-TraversalClient::TraversalClient(ros::NodeHandle nh)
-    : nh_(std::move(nh)), begin_(nh_.serviceClient<perennial_nav::BeginTraversal>("begin_traversal")) {
+TraversalClient::TraversalClient(ros::NodeHandle nh) : nh_(std::move(nh)) {
   const auto connected = [this](const ros::SingleSubscriberPublisher& listener) {
     listeners_.insert(listener.getSubscriberName());
   };
@@ -39,9 +42,10 @@ perennial_nav::BeginTraversalResponse TraversalClient::begin(const std::string& 
   service.request.map_name = map;
   service.request.start_distance_m = start_m;
   service.request.stamp = stamp;
-  if (!begin_.call(service)) {
-    throw MapError("map_manager does not answer on " + begin_.getService() + "; is it running?");
+  if (!begin_.isValid()) {
+    begin_ = nh_.serviceClient<perennial_nav::BeginTraversal>("begin_traversal");
   }
+  callWithin(kBeginPatience, begin_, service);
   if (!service.response.success) {
     throw MapError(service.response.message);
   }
@@ -64,9 +68,7 @@ std::vector<ActiveMap> TraversalClient::localMaps(std::size_t first, std::size_t
   service.request.first = static_cast<std::uint32_t>(first);
   service.request.count = static_cast<std::uint32_t>(count);
   service.request.with_edges = static_cast<std::uint8_t>(with_edges);
-  if (!local_maps_.call(service)) {
-    throw MapError("map_manager does not answer on " + local_maps_.getService());
-  }
+  callWithin(kPatience, local_maps_, service);
   if (!service.response.success) {
     throw MapError(service.response.message);
   }
@@ -105,9 +107,7 @@ std::uint32_t TraversalClient::end(bool commit, const ros::Time& stamp) {
   service.request.registrations = registrations_;
   service.request.commit = static_cast<std::uint8_t>(commit);
   service.request.stamp = stamp;
-  if (!end_.call(service)) {
-    throw MapError("map_manager does not answer on " + end_.getService());
-  }
+  callWithin(kPatience, end_, service);
   if (!service.response.success && commit) {
     throw MapError("this traversal was not learned from: " + service.response.message);
   }

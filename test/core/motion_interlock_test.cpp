@@ -23,6 +23,17 @@ TEST(MotionInterlock, allowsByDefault) {
   EXPECT_EQ(permit.speed_factor, 1.0);
 }
 
+TEST(MotionInterlock, anEmergencyStopFromBeforeWaitsForResume) {
+  MotionInterlock interlock;
+  EXPECT_FALSE(interlock.emergencyStopped());
+  interlock.latchEmergencyStop();
+  EXPECT_TRUE(interlock.emergencyStopped());
+  EXPECT_EQ(interlock.at(0.0).kind, Kind::kStop);
+  EXPECT_TRUE(interlock.resume());
+  EXPECT_FALSE(interlock.emergencyStopped());
+  EXPECT_EQ(interlock.at(0.0).kind, Kind::kGo);
+}
+
 TEST(MotionInterlock, emergencyStopsStayUntilResumed) {
   for (const EmergencyStop source : {EmergencyStop::kTopic, EmergencyStop::kService}) {
     MotionInterlock interlock;

@@ -67,7 +67,7 @@ TEST(Steering, aPositiveDisplacementTurnsLeft) {
   EXPECT_NEAR(steer({}, 50.0, std::nullopt, settings).angular, settings.gain_per_px * 50.0, 1e-12);
 }
 
-TEST(Steering, limitsItsCorrectionAndNeverGivesNan) {
+TEST(Steering, limitsItsCorrectionAndStopsOnNan) {
   SteeringSettings settings;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1e6, 1e6);
@@ -77,9 +77,11 @@ TEST(Steering, limitsItsCorrectionAndNeverGivesNan) {
     EXPECT_EQ(velocity.forward, taught.forward);
     EXPECT_LE(std::abs(velocity.angular - taught.angular), settings.max_correction + 1e-6);
   }
-  const Velocity velocity = steer({kNan, kNan, kNan}, kNan, 500.0, settings);
-  EXPECT_TRUE(std::isfinite(velocity.forward) && std::isfinite(velocity.angular) &&
-              std::isfinite(velocity.flipper));
+  EXPECT_EQ(steer({kNan, 0.1, 0.0}, 10.0, 500.0, settings), Velocity());
+  EXPECT_EQ(steer({0.5, kNan, 0.0}, 10.0, 500.0, settings), Velocity());
+  EXPECT_EQ(steer({0.5, 0.1, kNan}, 10.0, 500.0, settings), Velocity());
+  EXPECT_EQ(steer({0.5, 0.1, 0.0}, kNan, 500.0, settings), Velocity());
+  EXPECT_EQ(steer({0.5, 0.1, 0.0}, 10.0, kNan, settings), Velocity()) << "unguided is not straight on";
 }
 
 TEST(Steering, slowedKeepsTheCurve) {

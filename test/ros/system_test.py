@@ -2,6 +2,7 @@
 """Nodes that are killed while the robot repeats: it stops, the goal ends with a reason or goes on, and the next one works."""
 import os
 import shutil
+import signal
 import sys
 import unittest
 
@@ -9,10 +10,11 @@ import rospy
 import rostest
 from perennial_nav.msg import NavigationState
 from std_msgs.msg import Empty
+from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from fake_robot import FakeRobot, wait_until  # noqa: E402
-from killing import kill, wait_for_new  # noqa: E402
+from killing import kill, process_of, wait_for_new  # noqa: E402
 from stack import BOTH, LENGTH_M, Stack  # noqa: E402
 
 FOLDER = ""  # of the maps; from the command line
@@ -82,6 +84,48 @@ class Killed(unittest.TestCase):
         wait_for_new("/map_manager", before)
         wait_until(self.serves, "the new map_manager")
         self.complete()
+
+    def test_map_manager_that_hangs(self):
+        manager = process_of("/map_manager")
+        os.kill(manager, signal.SIGSTOP)
+        try:
+            for _ in range(1000):  # images wait for their local maps now
+                if self.failed():
+                    break
+                self.robot.step(["teach_recorder"])
+            wait_until(self.robot.stands, "the robot to stop")
+            self.assertIn("no local map", self.stack.states[-1].reason)
+            wait_until(lambda: self.stack.done(self.stack.repeat), "the goal to end, though the manager does not answer")
+        finally:
+            os.kill(manager, signal.SIGCONT)
+        self.complete()
+
+    def failed(self):
+        return self.stack.states[-1].state == NavigationState.FAILED
+
+    def test_emergency_stop_outlives_the_navigator(self):
+        stop = rospy.ServiceProxy("/e_stop", SetBool)
+        self.assertTrue(stop(True).success)
+        wait_until(self.robot.stands, "the robot to stop")
+        wait_until(lambda: self.robot.tick(0.02) or rospy.get_param("/emergency_stopped", False),
+                   "the stop to be remembered")  # fmt: skip
+        before = kill("/repeat_navigator")
+        wait_for_new("/repeat_navigator", before)
+        wait_until(lambda: self.robot.heartbeat.get_num_connections() > 0, "the new navigator's safety inputs")
+        self.wait_for_answer("repeat_navigator")
+        self.stack.repeat.stop_tracking_goal()
+        wait_until(lambda: self.stack.repeat.wait_for_server(rospy.Duration(0.01)) or self.stack.tick(), "the action")
+        sent = len(self.robot.commands)
+        self.stack.begin_repeat("path")
+        for _ in range(10):
+            self.robot.step(BOTH)
+        wait_until(lambda: "there was an emergency stop" in self.stack.states[-1].reason, "the reason")
+        self.assertEqual([command for command in self.robot.commands[sent:] if command.linear.x != 0.0], [])
+        rospy.wait_for_service("/resume")
+        self.assertTrue(rospy.ServiceProxy("/resume", Trigger)().success)
+        self.stack.drive(lambda: False)
+        result = self.stack.result(self.stack.repeat)
+        self.assertTrue(result.success, result.reason)
 
     @staticmethod
     def serves():

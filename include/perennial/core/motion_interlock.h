@@ -78,6 +78,10 @@ class MotionInterlock {
   /// Engaged: the robot stops. Released: it goes on only after resume(), for releasing a stop must not start
   /// a robot.
   void setEmergencyStop(EmergencyStop source, bool engaged);
+  /// There was an emergency stop: the robot goes on only after resume().
+  void latchEmergencyStop() { emergency_latched_ = true; }
+  /// Whether one is engaged, or was and resume() has not been called.
+  bool emergencyStopped() const { return emergency_latched_; }
   /// Whether the robot may go on; not while an emergency stop is engaged.
   bool resume();
 

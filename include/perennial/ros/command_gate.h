@@ -47,6 +47,8 @@ class CommandGate {
   // What SafetyInputs hears; acts at once. A stamp is the message's own: late ones do not count as news.
   // Zero: it has none, and counts from its arrival.
   void setEmergencyStop(EmergencyStop source, bool engaged);
+  void latchEmergencyStop();
+  bool emergencyStopped() const;
   bool resume();
   void deadMan(bool held, const ros::Time& stamp);
   void obstacle(ObstacleSensor sensor, double distance_m, const ros::Time& stamp);

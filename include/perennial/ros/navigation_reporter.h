@@ -26,6 +26,8 @@ class NavigationReporter {
   void state(const ros::Time& stamp, const NavigationStatus& status, const geometry_msgs::Twist& command,
              const RepeatRun* run, const NavigationStep* step);
   void matches(const NavigationStep& step, const sensor_msgs::ImageConstPtr& image, const RepeatRun& run);
+  /// From here on the log has room again.
+  void beginTraversal() { log_.begin(); }
   /// Done with an image; `drives`: whether the command is meant for it.
   void processed(const std_msgs::Header& header, bool drives, const geometry_msgs::Twist& command);
 

@@ -16,6 +16,7 @@
 #include "perennial/core/repeat_session.h"
 #include "perennial/core/restart_watch.h"
 #include "perennial/ros/command_gate.h"
+#include "perennial/ros/emergency_memory.h"
 #include "perennial/ros/image_queue.h"
 #include "perennial/ros/live_settings.h"
 #include "perennial/ros/localiser.h"
@@ -81,6 +82,8 @@ class RepeatNavigator {
   bool isFromBefore(const std_msgs::Header& header) const;
   /// What navigation waits for, as the supervisor wants it.
   std::string missing() const;
+  /// `what` is missing; says so when messages came, but from before the goal by their stamps.
+  std::string missingSinceGoal(const std::string& what, std::size_t from_before) const;
   void publishState(const ros::Time& stamp, const NavigationStep* step = nullptr);
   void acknowledge(const sensor_msgs::ImageConstPtr& image);
 
@@ -94,6 +97,7 @@ class RepeatNavigator {
   TraversalClient traversals_;
   Localiser localiser_;
   CommandGate gate_;
+  EmergencyMemory emergency_memory_;
   SafetyInputs inputs_;
   std::unique_ptr<RepeatRun> run_;
   NavigationStep step_;  ///< the newest one; its memory is used again

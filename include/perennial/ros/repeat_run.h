@@ -25,6 +25,8 @@ struct RepeatRun {
   double driven_m = 0.0;                   ///< in the traversals before the current one
   double travelled_m = 0.0;                ///< by the odometer, at the newest image
   ros::Time started;                       ///< when the goal came
+  std::size_t images_from_before = 0;      ///< left out, because their stamps lie before `started`
+  std::size_t odometry_from_before = 0;    ///< likewise
   std::size_t images = 0;                  ///< registered, in all traversals
   std::size_t recognised = 0;              ///< of these: with a displacement
   double progress_m = 0.0;                 ///< travelled distance when the robot last moved

@@ -17,7 +17,8 @@ namespace perennial {
 
 /// The navigator's side of the conversation with map_manager: opens and ends traversals, publishes the
 /// registrations and counts them, so that the manager can wait for all. Calls block until the manager
-/// answers. Throws MapError with the manager's reason, or when no manager answers.
+/// answers; one that hangs for 20 s, or 300 s where a map is opened, counts as gone. Throws MapError with the
+/// manager's reason, or when no manager answers.
 class TraversalClient {
  public:
   explicit TraversalClient(ros::NodeHandle nh);
