@@ -402,7 +402,7 @@ void RepeatNavigator::publishFeedback(const NavigationStep* step) {
 
 void RepeatNavigator::watchProgress(const ros::Time& stamp) {
   const bool moved = std::abs(run_->travelled_m - run_->progress_m) > kProgress_m;
-  if (moved || std::abs(gate_.newest().linear.x) < 1e-3) {
+  if (moved || gate_.permit().hinders() || std::abs(gate_.newest().linear.x) < 1e-3) {
     run_->progress_m = run_->travelled_m;
     run_->progress_stamp = stamp;
     return;

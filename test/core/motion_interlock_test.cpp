@@ -72,16 +72,44 @@ TEST(MotionInterlock, obstaclesSlowThenHold) {
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "the scanner is silent";
   interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
-  EXPECT_NEAR(interlock.at(1.0).speed_factor, 0.5, 1e-12);
+  EXPECT_NEAR(interlock.at(1.0).speed_factor, (1.0 + settings.obstacles.least_speed) / 2.0, 1e-12);
+  EXPECT_TRUE(interlock.at(1.0).hinders());
   interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kHold) << "the nearer one counts";
   interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1, 1.1);
   interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1, 1.1);
   EXPECT_EQ(interlock.at(1.1).speed_factor, 1.0);
+  EXPECT_FALSE(interlock.at(1.1).hinders());
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "silent again";
   interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0, 2.0);
   interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "a sensor that does not know";
+}
+
+TEST(MotionInterlock, aRobotThatDrivesAtAWallComesToHold) {
+  InterlockSettings settings;
+  settings.obstacles.range = true;
+  MotionInterlock interlock(settings);
+  constexpr double kStep_s = 0.1;
+  double now_s = 0.0;
+  double wall_m = 3.0;
+  double before = 1.0;
+  const auto look = [&] {
+    interlock.obstacle(ObstacleSensor::kRange, wall_m, now_s, now_s);
+    return interlock.at(now_s);
+  };
+  for (MotionPermit permit = look(); permit.kind != Kind::kHold; permit = look()) {
+    ASSERT_EQ(permit.kind, Kind::kGo);
+    ASSERT_LE(permit.speed_factor, before) << "slower and slower";
+    ASSERT_GE(permit.speed_factor, settings.obstacles.least_speed);
+    ASSERT_LT(now_s, 30.0) << "still on its way at " << wall_m << " m";
+    before = permit.speed_factor;
+    wall_m -= 0.3 * permit.speed_factor * kStep_s;
+    now_s += kStep_s;
+  }
+  EXPECT_LE(wall_m, settings.obstacles.stop_distance_m);
+  EXPECT_GT(wall_m, settings.obstacles.stop_distance_m - 0.02);
+  EXPECT_TRUE(look().hinders());
 }
 
 TEST(MotionInterlock, lateMessagesAreNoNews) {
@@ -165,6 +193,8 @@ TEST(MotionInterlock, needsTheMaster) {
 TEST(InterlockSettings, refusesWhatMakesNoSense) {
   ParameterReader obstacles({{"slow_distance_m", 0.5}, {"stop_distance_m", 1.0}});
   EXPECT_THROW(ObstacleSettings::load(obstacles), ParameterError);
+  ParameterReader standing({{"least_speed", 0.0}});
+  EXPECT_THROW(ObstacleSettings::load(standing), ParameterError);
   ParameterReader teleop({{"timeout_s", 2.0}});
   EXPECT_THROW(OverrideSettings::load(teleop), ParameterError);
   ParameterReader dead_man({{"kind", std::string("pedal")}});
