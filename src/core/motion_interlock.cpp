@@ -167,10 +167,7 @@ MotionPermit MotionInterlock::byObstacles() const {
   }
   const double span_m = obstacles.slow_distance_m - obstacles.stop_distance_m;
   const double share = (nearest_m - obstacles.stop_distance_m) / span_m;
-  return {MotionPermit::Kind::kGo,
-          obstacles.least_speed + (1.0 - obstacles.least_speed) * share,
-          reason,
-          {}};
+  return {MotionPermit::Kind::kGo, obstacles.least_speed + (1.0 - obstacles.least_speed) * share, reason, {}};
 }
 
 MotionPermit MotionInterlock::at(double now_s) const {

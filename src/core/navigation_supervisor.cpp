@@ -25,7 +25,7 @@ SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   settings.blind_speed = reader.real("blind_speed", settings.blind_speed, 0.05, 1.0);
   settings.least_speed = reader.real("least_speed", settings.least_speed, 0.05, 1.0);
   settings.full_confidence = reader.real("full_confidence", settings.full_confidence, 0.0, 1.0);
-  settings.frozen_images = reader.integer("frozen_images", settings.frozen_images, 0, 1000000);
+  settings.camera = ImageWatchSettings::load(reader);
   return settings;
 }
 

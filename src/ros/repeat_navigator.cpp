@@ -30,7 +30,7 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
       settings_(RepeatNavigatorSettings::load(private_nh)),
       odometer_(settings_.odometer),
       images_(settings_.every_image ? 0 : kImagesKept),
-      image_watch_(settings_.supervisor.frozen_images),
+      image_watch_(settings_.supervisor.camera),
       supervisor_(settings_.supervisor),
       traversals_(nh_),
       localiser_(nh_, traversals_,

@@ -199,6 +199,8 @@ TEST(InterlockSettings, refusesWhatMakesNoSense) {
   EXPECT_THROW(OverrideSettings::load(teleop), ParameterError);
   ParameterReader dead_man({{"kind", std::string("pedal")}});
   EXPECT_THROW(DeadManSettings::load(dead_man), ParameterError);
+  ParameterReader camera({{"frozen_distance_m", 0.0}});
+  EXPECT_THROW(ImageWatchSettings::load(camera), ParameterError);
   ParameterReader heartbeat({{"kind", std::string("heartbeat")}});
   EXPECT_EQ(DeadManSettings::load(heartbeat).kind, DeadManSettings::Kind::kHeartbeat);
 }
@@ -253,7 +255,7 @@ class Camera : public ::testing::Test {
     const std::vector<std::uint8_t> pixels(64, pixel);
     return watch_.checkPixels(pixels.data(), pixels.size(), travelled_m);
   }
-  ImageWatch watch_{3};
+  ImageWatch watch_{ImageWatchSettings{3, 0.5}};
 };
 
 TEST_F(Camera, isFrozenWhenTheSameImageComesOnTheWay) {
@@ -266,6 +268,16 @@ TEST_F(Camera, isFrozenWhenTheSameImageComesOnTheWay) {
   EXPECT_EQ(look(2, 0.3), "");
 }
 
+TEST_F(Camera, isFrozenWhenTwoImagesFarFromEachOtherAreTheSame) {
+  EXPECT_EQ(look(1, 0.0), "");
+  EXPECT_NE(look(1, 0.51), "") << "a slow camera, or a fast robot";
+  EXPECT_EQ(look(2, 1.0), "");
+  EXPECT_EQ(look(2, 1.4), "");
+  EXPECT_NE(look(2, 1.52).find("2 times in 0.5 m"), std::string::npos) << "since it was first seen";
+  EXPECT_EQ(look(3, 1.6), "");
+  EXPECT_EQ(look(2, 9.0), "") << "in between it saw something else";
+}
+
 TEST_F(Camera, maySeeTheSameWhileStanding) {
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(look(1, 7.0 + 0.001 * i), "");
@@ -273,7 +285,7 @@ TEST_F(Camera, maySeeTheSameWhileStanding) {
 }
 
 TEST_F(Camera, isNotJudgedWhenSwitchedOff) {
-  watch_ = ImageWatch(0);
+  watch_ = ImageWatch(ImageWatchSettings{0, 0.5});
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(look(1, i), "");
   }

@@ -375,9 +375,11 @@ class Stops(unittest.TestCase):
         self.assertLessEqual(len(lines), 20, lines)
 
     def test_frozen_camera(self):
+        frozen_at = self.robot.x
         self.robot.frozen = True
-        self.steps(14)
+        self.steps(8)  # of 0.05 m
         self.assert_stands("frozen")
+        self.assertLess(self.robot.x, frozen_at + 0.35, "long before frozen_images have come")
         self.robot.frozen = False
         self.assert_goes_on()
 

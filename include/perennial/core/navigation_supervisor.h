@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "perennial/core/image_watch.h"
 #include "perennial/core/motion_interlock.h"
 #include "perennial/core/parameter_reader.h"
 #include "perennial/core/sight.h"
@@ -17,7 +18,7 @@ struct SupervisorSettings {
   double blind_speed = 0.5;       ///< share of the taught speed while the view is not recognised
   double least_speed = 0.4;       ///< share of the taught speed with the lowest confidence
   double full_confidence = 0.9;   ///< from this confidence on the taught speed is driven
-  int frozen_images = 10;         ///< so many identical images on the way: the camera is frozen; 0: never
+  ImageWatchSettings camera;      ///< its keys are in the same group
   double sensor_timeout_s = 0.5;  ///< nothing seen for so long: stopped. Not in the group; as the node's own
   double give_up_s = 10.0;        ///< nothing seen for so long: failed. Not in the group; as the node's own
 
@@ -53,8 +54,8 @@ struct NavigationStatus {
 /// wins.
 ///
 /// A robot that has not recognised the path since the goal came may stand anywhere, or have its camera
-/// covered: it stands until `sights_to_trust` images in a row were recognised, unless `max_blind_start_m` lets
-/// it drive so far at the least speed.
+/// covered: it stands until `sights_to_trust` images in a row were recognised, unless `max_blind_start_m`
+/// lets it drive so far at the least speed.
 class NavigationSupervisor {
  public:
   explicit NavigationSupervisor(const SupervisorSettings& settings = {});
