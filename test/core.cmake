@@ -55,11 +55,19 @@ perennial_gtest(map_migration_test core/map_migration_test.cpp
   LIBRARIES perennial_strategies SQLite::SQLite3
   DEFINITIONS ${format1_map}
 )
-perennial_gtest(map_migration_fault_test core/map_migration_fault_test.cpp core/failing_calls.cpp core/faulty_vfs.cpp
+perennial_gtest(map_migration_fault_test
+  core/failing_calls.cpp
+  core/faulty_vfs.cpp
+  core/map_migration_fault_test.cpp
+  core/unsynced_changes.cpp
   LIBRARIES SQLite::SQLite3 ${CMAKE_DL_LIBS}
   DEFINITIONS ${format1_map}
 )
 perennial_gtest(map_name_test core/map_name_test.cpp)
+perennial_gtest(map_power_test core/failing_calls.cpp core/map_power_test.cpp core/unsynced_changes.cpp
+  LIBRARIES SQLite::SQLite3 ${CMAKE_DL_LIBS}
+  DEFINITIONS ${format1_map}
+)
 perennial_gtest(map_tool_test core/map_tool_test.cpp
   LIBRARIES opencv_imgcodecs ${YAML_CPP_LIBRARIES}
   DEFINITIONS MAP_TOOL="$<TARGET_FILE:map_tool>" ${format1_map}

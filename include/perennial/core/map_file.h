@@ -79,7 +79,8 @@ class MapWriter {
 
   /// Stores the profile and the length, syncs, and renames to the final name. A map without local maps is
   /// refused. When only the name cannot be given (it is taken meanwhile, or the map to be replaced is in
-  /// use), the complete map stays in the partial file, the error says so, and finish() may be called again.
+  /// use), the complete map stays in the partial file, the error says so, and finish() may be called again;
+  /// not after a sync that failed, for nobody knows then what is on the disk.
   void finish(const PathProfile& profile, double length_m);
 
   std::size_t size() const;  ///< local maps added
@@ -139,7 +140,8 @@ class MapFile {
   /// memory.
   void stage(const LocalMap& map);
   /// All of the traversal or nothing. Without anything staged, no traversal is recorded. After an error (disk
-  /// full) the file is as it was and the traversal still open: commit again, or discard it.
+  /// full) the file is as it was and the traversal still open: commit again, or discard it. Only when nothing
+  /// but the folder could not be synced it is committed, and the error says so.
   void commitTraversal(double end_stamp_s);
   void discardTraversal();
 

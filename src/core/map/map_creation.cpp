@@ -17,8 +17,10 @@ Database createMap(PartialFile& partial) {
   return database;
 }
 
-void completeMap(const Database& database) {
-  database.execute(("PRAGMA user_version=" + std::to_string(kMapFormatVersion) + "; COMMIT").c_str());
+void completeMap(const Database& database, PartialFile& partial) {
+  database.execute("COMMIT");
+  partial.sync();
+  database.execute(("PRAGMA user_version=" + std::to_string(kMapFormatVersion)).c_str());
 }
 
 }  // namespace perennial

@@ -11,7 +11,8 @@ namespace perennial {
 /// nothing can be made of it.
 Database createMap(PartialFile& partial);
 
-/// From now on it is a whole map of the present format version.
-void completeMap(const Database& database);
+/// From now on it is a whole map of the present format version. What it holds is on the disk before it is
+/// called so: a power failure must not leave something that only looks like one.
+void completeMap(const Database& database, PartialFile& partial);
 
 }  // namespace perennial

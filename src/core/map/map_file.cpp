@@ -258,7 +258,14 @@ void MapFile::commitTraversal(double end_stamp_s) {
   }
   Transaction transaction(database);
   implementation_->writeStaged(end_stamp_s);
-  transaction.commit();
+  try {
+    transaction.commit();
+  } catch (const SqliteError& error) {
+    if (error.isOfCommitted()) {
+      implementation_->open.reset();
+    }
+    throw;
+  }
   implementation_->open.reset();
 }
 
@@ -312,7 +319,7 @@ void MapFile::compact(std::uint32_t keep) {
     {
       const Database target = createMap(copy);
       copyCompacted(implementation_->database, implementation_->stored, keep, target);
-      completeMap(target);
+      completeMap(target, copy);
     }
     copy.replaceLocked();
   }

@@ -36,7 +36,7 @@ void requireRoom(const std::string& file) {
 void writeCopy(const Database& source, const StoredMetadata& stored, PartialFile& copy) {
   const Database target = createMap(copy);
   copyCompacted(source, stored, kAllTraversals, target);
-  completeMap(target);
+  completeMap(target, copy);
 }
 
 /// A row's checksum covers its number and all its content.

@@ -95,8 +95,8 @@ Database openMapDatabase(const std::string& file) {
   // A file from anywhere must not be able to run anything.
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   try {
-    // Every commit must be on the disk when it returns.
-    database.execute("PRAGMA synchronous=FULL; PRAGMA cell_size_check=ON; PRAGMA trusted_schema=OFF");
+    // Every commit must be on the disk when it returns; with FULL, the journal might come back and undo it.
+    database.execute("PRAGMA synchronous=EXTRA; PRAGMA cell_size_check=ON; PRAGMA trusted_schema=OFF");
     // The first access undoes what a crash interrupted; only then is the header what it should be.
     Transaction reading(database, "BEGIN");
     database.integer("PRAGMA schema_version");

@@ -95,7 +95,7 @@ void MapWriter::Implementation::complete(const PathProfile& profile, double leng
   writeProfile(*database, profile);
   writeTraversal(*database, {0, "", metadata.taught_stamp_s, last_stamp_s, local_maps});
   writeMetadata(*database, {metadata, local_maps, profile.entries().size()});
-  completeMap(*database);
+  completeMap(*database, partial);
   broken = false;
   insert_place.reset();
   insert_image.reset();

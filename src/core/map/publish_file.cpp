@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/map/checksum_vfs.h"
 #include "core/map/map_schema.h"
 #include "core/map/sqlite.h"
 #include "perennial/core/error.h"
@@ -33,16 +33,17 @@ fs::path folderOf(const std::string& file) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-/// Whether a partial file is complete: SQLite's application_id and user_version stand big-endian at 68
-/// and 60.
+/// Whether a partial file is complete (completeMap()): SQLite's application_id and user_version stand
+/// big-endian at 68 and 60.
 bool isFinishedMap(int descriptor) {
-  std::array<std::uint8_t, 72> header{};
-  if (::pread(descriptor, header.data(), header.size(), 0) != static_cast<ssize_t>(header.size())) {
+  Page first{};
+  if (::pread(descriptor, first.data(), first.size(), 0) != static_cast<ssize_t>(first.size()) ||
+      !pageIsIntact(first.data(), 1)) {
     return false;
   }
-  const auto bigEndian = [&header](std::size_t i) {
-    return std::uint32_t{header[i]} << 24 | std::uint32_t{header[i + 1]} << 16 |
-           std::uint32_t{header[i + 2]} << 8 | std::uint32_t{header[i + 3]};
+  const auto bigEndian = [&first](std::size_t i) {
+    return std::uint32_t{first[i]} << 24 | std::uint32_t{first[i + 1]} << 16 |
+           std::uint32_t{first[i + 2]} << 8 | std::uint32_t{first[i + 3]};
   };
   return bigEndian(68) == kMapApplicationId && bigEndian(60) > 0;
 }
@@ -162,9 +163,11 @@ void PartialFile::append(const void* bytes, std::size_t size) {
   }
 }
 
-void PartialFile::sync() const {
-  if (::fsync(descriptor_) != 0) {
-    throw MapError("'" + path_ + "' cannot be synced to the disk: " + systemError() +
+void PartialFile::sync() {
+  if (sync_failed_ || ::fsync(descriptor_) != 0) {
+    const std::string reason = sync_failed_ ? "that has failed before" : systemError();
+    sync_failed_ = true;
+    throw MapError("'" + path_ + "' cannot be synced to the disk: " + reason +
                    ". Free some space, or check the disk");
   }
 }

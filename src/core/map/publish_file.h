@@ -29,6 +29,9 @@ class PartialFile {
 
   const std::string& path() const { return path_; }
   void append(const void* bytes, std::size_t size);
+  /// What was written is on the disk. Once this has failed it fails for good: the kernel may have dropped
+  /// what it could not write, and would call the next attempt a success.
+  void sync();
 
   /// From now on the file is worth keeping, whatever happens.
   void keep() { remove_ = false; }
@@ -46,7 +49,6 @@ class PartialFile {
 
  private:
   void lock();
-  void sync() const;
   void rename(bool overwrite);
 
   std::string final_;
@@ -54,6 +56,7 @@ class PartialFile {
   int descriptor_ = -1;
   bool remove_ = true;
   bool published_ = false;
+  bool sync_failed_ = false;
 };
 
 }  // namespace perennial

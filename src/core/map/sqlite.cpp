@@ -8,6 +8,9 @@ namespace perennial {
 namespace {
 
 std::string remedy(int code) {
+  if (code == SQLITE_IOERR_DIR_FSYNC) {
+    return "it is written, but may be lost if the power fails; check the disk and the system's log";
+  }
   switch (code & 0xFF) {
     case SQLITE_FULL:
       return "free some space and try again; what the map held before is unharmed";

@@ -18,6 +18,8 @@ class SqliteError : public MapError {
   SqliteError(const std::string& message, int code) : MapError(message), code_(code) {}
   /// Primary result code: SQLITE_BUSY, SQLITE_CORRUPT ...
   int code() const { return code_ & 0xFF; }
+  /// The transaction is done, but a power failure could still undo it: the folder could not be synced.
+  bool isOfCommitted() const { return code_ == SQLITE_IOERR_DIR_FSYNC; }
 
  private:
   int code_;
