@@ -60,6 +60,7 @@ ObstacleSettings ObstacleSettings::load(ParameterReader& reader) {
   settings.flag = reader.boolean("flag", settings.flag);
   settings.slow_distance_m = reader.real("slow_distance_m", settings.slow_distance_m, 0.0, 100.0);
   settings.stop_distance_m = reader.real("stop_distance_m", settings.stop_distance_m, 0.0, 100.0);
+  settings.least_speed = reader.real("least_speed", settings.least_speed, 0.01, 1.0);
   settings.half_width_m = reader.real("half_width_m", settings.half_width_m, 0.01, 10.0);
   settings.timeout_s = reader.real("timeout_s", settings.timeout_s, 0.05, 60.0);
   if (settings.slow_distance_m < settings.stop_distance_m) {
@@ -165,7 +166,8 @@ MotionPermit MotionInterlock::byObstacles() const {
     return {MotionPermit::Kind::kHold, 0.0, reason, {}};
   }
   const double span_m = obstacles.slow_distance_m - obstacles.stop_distance_m;
-  return {MotionPermit::Kind::kGo, (nearest_m - obstacles.stop_distance_m) / span_m, reason, {}};
+  const double share = (nearest_m - obstacles.stop_distance_m) / span_m;
+  return {MotionPermit::Kind::kGo, obstacles.least_speed + (1.0 - obstacles.least_speed) * share, reason, {}};
 }
 
 MotionPermit MotionInterlock::at(double now_s) const {

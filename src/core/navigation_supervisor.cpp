@@ -17,6 +17,7 @@ constexpr double kForwards_s = 5.0;
 
 SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   SupervisorSettings settings;
+  settings.max_blind_start_m = reader.real("max_blind_start_m", settings.max_blind_start_m, 0.0, 1e6);
   settings.max_blind_distance_m =
       reader.real("max_blind_distance_m", settings.max_blind_distance_m, 0.0, 1e6);
   settings.sights_to_trust = reader.integer("sights_to_trust", settings.sights_to_trust, 1, 1000);
@@ -24,7 +25,7 @@ SupervisorSettings SupervisorSettings::load(ParameterReader& reader) {
   settings.blind_speed = reader.real("blind_speed", settings.blind_speed, 0.05, 1.0);
   settings.least_speed = reader.real("least_speed", settings.least_speed, 0.05, 1.0);
   settings.full_confidence = reader.real("full_confidence", settings.full_confidence, 0.0, 1.0);
-  settings.frozen_images = reader.integer("frozen_images", settings.frozen_images, 0, 1000000);
+  settings.camera = ImageWatchSettings::load(reader);
   return settings;
 }
 
@@ -59,7 +60,7 @@ bool NavigationSupervisor::active() const {
 
 void NavigationSupervisor::start(double now_s) {
   newest_s_ = seen_s_ = now_s;
-  seen_any_ = false;
+  seen_any_ = on_path_ = false;
   sight_ = {};
   sights_in_a_row_ = 0;
   blind_from_m_ = blind_m_ = 0.0;
@@ -112,6 +113,7 @@ void NavigationSupervisor::noteSight(double travelled_m, const Sight& sight, con
     blind_from_m_ = travelled_m;  // what a person drives, a person sees
   }
   seen_any_ = true;
+  on_path_ = on_path_ || trusted();
   sight_ = sight;
   blind_m_ = travelled_m - blind_from_m_;
 }
@@ -166,21 +168,34 @@ bool NavigationSupervisor::mustStop(double now_s, const std::string& missing, co
 }
 
 bool NavigationSupervisor::mustHold(double now_s, const MotionPermit& permit) {
-  const bool blind = !trusted() && blind_m_ >= settings_.max_blind_distance_m;
-  if (!blind && permit.kind != MotionPermit::Kind::kHold) {
+  const bool obstructed = permit.kind == MotionPermit::Kind::kHold;
+  if (!obstructed && mayDriveBlind()) {
     return false;
   }
-  const std::string reason = permit.kind == MotionPermit::Kind::kHold
-                                 ? permit.reason
-                                 : "the path was not recognised for " + humanMetres(blind_m_);
+  const std::string reason = obstructed ? permit.reason : whyBlind();
   holding_since_s_ = holding_since_s_.value_or(now_s);
   const double held_s = now_s - *holding_since_s_;
   if (held_s > settings_.hold_timeout_s) {
     fail(reason + ", and nothing changed for " + humanSeconds(held_s));
   } else {
-    set(NavigationMode::kHolding, reason + "; waiting", 0.0);
+    const bool starting = !obstructed && !on_path_;
+    set(starting ? NavigationMode::kStarting : NavigationMode::kHolding, reason + "; waiting", 0.0);
   }
   return true;
+}
+
+bool NavigationSupervisor::mayDriveBlind() const {
+  return trusted() || blind_m_ < (on_path_ ? settings_.max_blind_distance_m : settings_.max_blind_start_m);
+}
+
+std::string NavigationSupervisor::whyBlind() const {
+  if (on_path_) {
+    return "the path was not recognised for " + humanMetres(blind_m_);
+  }
+  return sight_.recognised ? "the path must be recognised in " + std::to_string(settings_.sights_to_trust) +
+                                 " images in a row before the robot drives"
+                           : "the path is not recognised here (is this where it begins? `localise` finds the "
+                             "place; is the camera covered?)";
 }
 
 void NavigationSupervisor::drive(const MotionPermit& permit) {
@@ -196,6 +211,9 @@ void NavigationSupervisor::drive(const MotionPermit& permit) {
 }
 
 double NavigationSupervisor::speedFactor() const {
+  if (!on_path_) {
+    return std::min(settings_.blind_speed, settings_.least_speed);
+  }
   if (!sight_.recognised) {
     return settings_.blind_speed;
   }

@@ -6,6 +6,9 @@
 namespace perennial {
 namespace {
 
+/// What a step may be longer than the highest speed allows: stamps are not exact, least of all of samples
+/// that were stamped when they arrived, in a burst.
+constexpr double kSlack_m = 0.1;
 /// Steps shorter in time are judged as if they took this long: two samples stamped almost alike are not a
 /// jump.
 constexpr double kShortestStep_s = 0.02;
@@ -42,7 +45,7 @@ std::string Odometer::add(const OdometrySample& sample) {
     return "";
   }
   const double step_m = std::hypot(sample.x_m - last.sample.x_m, sample.y_m - last.sample.y_m);
-  if (step_m > settings_.max_speed_m_s * std::max(elapsed_s, kShortestStep_s)) {
+  if (step_m > settings_.max_speed_m_s * std::max(elapsed_s, kShortestStep_s) + kSlack_m) {
     return "odometry jumps by " + std::to_string(step_m) + " m in " + seconds(elapsed_s);
   }
   track_.push_back({sample, last.distance_m + step_m});

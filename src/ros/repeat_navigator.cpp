@@ -32,7 +32,7 @@ RepeatNavigator::RepeatNavigator(ros::NodeHandle nh, ros::NodeHandle private_nh)
       settings_(RepeatNavigatorSettings::load(private_nh)),
       odometer_(settings_.odometer),
       images_(settings_.every_image ? 0 : kImagesKept),
-      image_watch_(settings_.supervisor.frozen_images),
+      image_watch_(settings_.supervisor.camera),
       supervisor_(settings_.supervisor),
       traversals_(nh_),
       localiser_(nh_, traversals_,
@@ -422,7 +422,7 @@ void RepeatNavigator::publishFeedback(const NavigationStep* step) {
 
 void RepeatNavigator::watchProgress(const ros::Time& stamp) {
   const bool moved = std::abs(run_->travelled_m - run_->progress_m) > kProgress_m;
-  if (moved || std::abs(gate_.newest().linear.x) < 1e-3) {
+  if (moved || gate_.permit().hinders() || std::abs(gate_.newest().linear.x) < 1e-3) {
     run_->progress_m = run_->travelled_m;
     run_->progress_stamp = stamp;
     return;

@@ -56,6 +56,7 @@ void RepeatNavigator::startAt(const PlaceGuess& place, const ros::Time& stamp) {
     fail(error.what());
     return;
   }
+  supervisor_.trustPlace();
   run_->begun_m = place.distance_m;
   run_->certainty = place.certainty;
   const std::string found = place.reason + ", certainty " + humanPercent(place.certainty);

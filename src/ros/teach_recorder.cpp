@@ -28,6 +28,7 @@ TeachRecorderSettings TeachRecorderSettings::load(ParameterReader& reader) {
   }
   settings.camera = reader.text("camera", settings.camera);
   settings.every_image = reader.boolean("every_image", settings.every_image);
+  settings.image_watch = ImageWatchSettings::load(reader);
   return settings;
 }
 
@@ -39,6 +40,7 @@ TeachRecorder::TeachRecorder(ros::NodeHandle nh, ros::NodeHandle private_nh)
       extraction_(loadGroup<ExtractionSettings>(private_nh_, "extraction")),
       odometer_(loadGroup<OdometerSettings>(private_nh_, "odometer")),
       images_(settings_.every_image ? 0 : kImagesKept),
+      image_watch_(settings_.image_watch),
       transport_(nh_),
       reconfigure_(ros::NodeHandle(private_nh_, "extraction")),
       diagnostics_(nh_, private_nh_),
@@ -90,6 +92,7 @@ void TeachRecorder::begin(const perennial_nav::TeachGoal& goal) {
   odometer_.reset();
   odometry_watch_.reset();
   images_.clear();
+  image_watch_.reset();
   path_ = nav_msgs::Path();
   refused_images_ = 0;
   last_refusal_.clear();
@@ -193,6 +196,11 @@ void TeachRecorder::onImage(const sensor_msgs::ImageConstPtr& image) {
     acknowledge(image);
     return;
   }
+  if (const std::string problem = image_watch_.checkStamp(image->header.stamp.toSec()); !problem.empty()) {
+    acknowledge(image);
+    abort(problem);  // which of them is where, nobody knows
+    return;
+  }
   images_.push(image);
   processPending();
 }
@@ -221,6 +229,10 @@ void TeachRecorder::process(const sensor_msgs::ImageConstPtr& image, double trav
     }
     if (session_->addImage(image->header.stamp.toSec(), travelled_m, greyImage(image), image->encoding)) {
       publishProgress();
+    }
+    const std::string problem = image_watch_.checkPixels(image->data.data(), image->data.size(), travelled_m);
+    if (!problem.empty()) {
+      abort(problem);
     }
   } catch (const ImageError& error) {
     ++refused_images_;

@@ -79,6 +79,7 @@ class LongRun : public ::testing::Test {
     manager.beginTraversal(now_s_);
     session.beginTraversal(0.0, number == 0 ? std::optional<double>() : odometer_.newestDistance());
     supervisor_.start(now_s_);
+    supervisor_.trustPlace();
     const int turned = number % 3;
     for (int place = 0; place < kPlaces; ++place) {
       now_s_ += 0.2;

@@ -83,16 +83,44 @@ TEST(MotionInterlock, obstaclesSlowThenHold) {
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kStop) << "the scanner is silent";
   interlock.obstacle(ObstacleSensor::kScan, 1.0, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kGo);
-  EXPECT_NEAR(interlock.at(1.0).speed_factor, 0.5, 1e-12);
+  EXPECT_NEAR(interlock.at(1.0).speed_factor, (1.0 + settings.obstacles.least_speed) / 2.0, 1e-12);
+  EXPECT_TRUE(interlock.at(1.0).hinders());
   interlock.obstacle(ObstacleSensor::kRange, 0.4, 1.0, 1.0);
   EXPECT_EQ(interlock.at(1.0).kind, Kind::kHold) << "the nearer one counts";
   interlock.obstacle(ObstacleSensor::kRange, 9.0, 1.1, 1.1);
   interlock.obstacle(ObstacleSensor::kScan, 9.0, 1.1, 1.1);
   EXPECT_EQ(interlock.at(1.1).speed_factor, 1.0);
+  EXPECT_FALSE(interlock.at(1.1).hinders());
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "silent again";
   interlock.obstacle(ObstacleSensor::kRange, kNan, 2.0, 2.0);
   interlock.obstacle(ObstacleSensor::kScan, 9.0, 2.0, 2.0);
   EXPECT_EQ(interlock.at(2.0).kind, Kind::kStop) << "a sensor that does not know";
+}
+
+TEST(MotionInterlock, aRobotThatDrivesAtAWallComesToHold) {
+  InterlockSettings settings;
+  settings.obstacles.range = true;
+  MotionInterlock interlock(settings);
+  constexpr double kStep_s = 0.1;
+  double now_s = 0.0;
+  double wall_m = 3.0;
+  double before = 1.0;
+  const auto look = [&] {
+    interlock.obstacle(ObstacleSensor::kRange, wall_m, now_s, now_s);
+    return interlock.at(now_s);
+  };
+  for (MotionPermit permit = look(); permit.kind != Kind::kHold; permit = look()) {
+    ASSERT_EQ(permit.kind, Kind::kGo);
+    ASSERT_LE(permit.speed_factor, before) << "slower and slower";
+    ASSERT_GE(permit.speed_factor, settings.obstacles.least_speed);
+    ASSERT_LT(now_s, 30.0) << "still on its way at " << wall_m << " m";
+    before = permit.speed_factor;
+    wall_m -= 0.3 * permit.speed_factor * kStep_s;
+    now_s += kStep_s;
+  }
+  EXPECT_LE(wall_m, settings.obstacles.stop_distance_m);
+  EXPECT_GT(wall_m, settings.obstacles.stop_distance_m - 0.02);
+  EXPECT_TRUE(look().hinders());
 }
 
 TEST(MotionInterlock, lateMessagesAreNoNews) {
@@ -176,10 +204,14 @@ TEST(MotionInterlock, needsTheMaster) {
 TEST(InterlockSettings, refusesWhatMakesNoSense) {
   ParameterReader obstacles({{"slow_distance_m", 0.5}, {"stop_distance_m", 1.0}});
   EXPECT_THROW(ObstacleSettings::load(obstacles), ParameterError);
+  ParameterReader standing({{"least_speed", 0.0}});
+  EXPECT_THROW(ObstacleSettings::load(standing), ParameterError);
   ParameterReader teleop({{"timeout_s", 2.0}});
   EXPECT_THROW(OverrideSettings::load(teleop), ParameterError);
   ParameterReader dead_man({{"kind", std::string("pedal")}});
   EXPECT_THROW(DeadManSettings::load(dead_man), ParameterError);
+  ParameterReader camera({{"frozen_distance_m", 0.0}});
+  EXPECT_THROW(ImageWatchSettings::load(camera), ParameterError);
   ParameterReader heartbeat({{"kind", std::string("heartbeat")}});
   EXPECT_EQ(DeadManSettings::load(heartbeat).kind, DeadManSettings::Kind::kHeartbeat);
 }
@@ -234,7 +266,7 @@ class Camera : public ::testing::Test {
     const std::vector<std::uint8_t> pixels(64, pixel);
     return watch_.checkPixels(pixels.data(), pixels.size(), travelled_m);
   }
-  ImageWatch watch_{3};
+  ImageWatch watch_{ImageWatchSettings{3, 0.5}};
 };
 
 TEST_F(Camera, isFrozenWhenTheSameImageComesOnTheWay) {
@@ -247,6 +279,16 @@ TEST_F(Camera, isFrozenWhenTheSameImageComesOnTheWay) {
   EXPECT_EQ(look(2, 0.3), "");
 }
 
+TEST_F(Camera, isFrozenWhenTwoImagesFarFromEachOtherAreTheSame) {
+  EXPECT_EQ(look(1, 0.0), "");
+  EXPECT_NE(look(1, 0.51), "") << "a slow camera, or a fast robot";
+  EXPECT_EQ(look(2, 1.0), "");
+  EXPECT_EQ(look(2, 1.4), "");
+  EXPECT_NE(look(2, 1.52).find("2 times in 0.5 m"), std::string::npos) << "since it was first seen";
+  EXPECT_EQ(look(3, 1.6), "");
+  EXPECT_EQ(look(2, 9.0), "") << "in between it saw something else";
+}
+
 TEST_F(Camera, maySeeTheSameWhileStanding) {
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(look(1, 7.0 + 0.001 * i), "");
@@ -254,7 +296,7 @@ TEST_F(Camera, maySeeTheSameWhileStanding) {
 }
 
 TEST_F(Camera, isNotJudgedWhenSwitchedOff) {
-  watch_ = ImageWatch(0);
+  watch_ = ImageWatch(ImageWatchSettings{0, 0.5});
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(look(1, i), "");
   }

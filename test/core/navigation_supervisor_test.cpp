@@ -35,9 +35,15 @@ class Supervisor : public ::testing::Test {
     now_s_ += after_s;
     return supervisor_.watch(now_s_, missing, permit);
   }
+  /// A goal, and the path is recognised from the first image on; the robot stands until it may drive.
   void startAndSee() {
     supervisor_.start(now_s_);
+    moves_ = false;
+    for (int i = 1; i < settings_.sights_to_trust; ++i) {
+      ASSERT_EQ(see(kSure).mode, Mode::kStarting) << i;
+    }
     ASSERT_EQ(see(kSure).mode, Mode::kRepeating);
+    moves_ = true;
   }
   void driveBlindUntilHolding() {
     for (int i = 0; i < 200 && supervisor_.status().mode != Mode::kHolding; ++i) {
@@ -66,6 +72,11 @@ TEST_F(Supervisor, startsAndRepeats) {
   EXPECT_EQ(supervisor_.status().mode, Mode::kStarting);
   EXPECT_EQ(supervisor_.status().speed_factor, 0.0);
   EXPECT_EQ(watch(0.1).mode, Mode::kStarting);
+  for (int i = 1; i < settings_.sights_to_trust; ++i) {
+    EXPECT_EQ(see(kSure).mode, Mode::kStarting) << "fewer in a row may be chance";
+    EXPECT_EQ(supervisor_.status().speed_factor, 0.0);
+    EXPECT_NE(supervisor_.status().reason.find("3 images in a row"), std::string::npos);
+  }
   EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
   EXPECT_EQ(supervisor_.status().speed_factor, 1.0);
   EXPECT_FALSE(supervisor_.status().reason.empty());
@@ -91,9 +102,67 @@ TEST_F(Supervisor, drivesSlowerByOdometryThenHolds) {
   EXPECT_NE(supervisor_.status().reason.find("not recognised for 2.0 m"), std::string::npos);
 }
 
-TEST_F(Supervisor, startingBlindCountsFromTheFirstImage) {
+TEST_F(Supervisor, standsUntilThePathIsRecognised) {
+  supervisor_.start(now_s_);
+  moves_ = false;
+  for (int i = 0; i < 90; ++i) {  // by chance, now and then, but never often enough in a row
+    ASSERT_EQ(see(i % 4 == 0 ? kSure : kBlind).mode, Mode::kStarting) << i;
+    ASSERT_EQ(supervisor_.status().speed_factor, 0.0);
+  }
+  EXPECT_NE(see(kBlind).reason.find("not recognised here"), std::string::npos);
+  EXPECT_NE(supervisor_.status().reason.find("localise"), std::string::npos);
+  see(kSure);
+  see(kSure);
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
+  EXPECT_EQ(see(kBlind).mode, Mode::kDegraded) << "from now on it may be blind for a while";
+}
+
+TEST_F(Supervisor, failsWhereThePathIsNeverRecognised) {
+  supervisor_.start(now_s_);
+  moves_ = false;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(see(kBlind).mode, Mode::kStarting) << i;
+  }
+  see(kBlind);
+  see(kBlind);
+  EXPECT_EQ(supervisor_.status().mode, Mode::kFailed);
+  EXPECT_NE(supervisor_.status().reason.find("not recognised here"), std::string::npos);
+}
+
+TEST_F(Supervisor, whatStandsInTheWayOfAStartIsNamedFirst) {
+  supervisor_.start(now_s_);
+  moves_ = false;
+  const MotionPermit hold{Kind::kHold, 0.0, "something is in the way, 0.3 m ahead", {}};
+  EXPECT_EQ(see(kBlind, hold).mode, Mode::kHolding);
+  EXPECT_EQ(see(kBlind).mode, Mode::kStarting);
+  EXPECT_EQ(watch(settings_.sensor_timeout_s + 0.1, "image").mode, Mode::kStopped);
+  EXPECT_EQ(see(kBlind).mode, Mode::kStarting);
+}
+
+TEST_F(Supervisor, startsBlindlyWhereThatIsAskedFor) {
+  settings_.max_blind_start_m = 1.0;
+  supervisor_ = NavigationSupervisor(settings_);
   supervisor_.start(now_s_);
   EXPECT_EQ(see(kBlind).mode, Mode::kDegraded) << "the distance travelled before does not count";
+  const double from_m = travelled_m_;
+  while (supervisor_.status().mode == Mode::kDegraded) {
+    EXPECT_EQ(supervisor_.status().speed_factor, settings_.least_speed);
+    ASSERT_LT(travelled_m_ - from_m, 1.1);
+    see(kBlind);
+  }
+  EXPECT_NEAR(travelled_m_ - from_m, 1.0, 0.051);
+  EXPECT_EQ(supervisor_.status().mode, Mode::kStarting);
+  EXPECT_EQ(supervisor_.status().speed_factor, 0.0);
+}
+
+TEST_F(Supervisor, aRobotThatWasFoundNeedNotBeRecognisedAgain) {
+  supervisor_.start(now_s_);
+  supervisor_.prepare(now_s_, "looking for the place", {});
+  supervisor_.trustPlace();
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
+  EXPECT_EQ(see(kBlind).mode, Mode::kDegraded);
+  supervisor_.start(now_s_);
+  EXPECT_EQ(see(kSure).mode, Mode::kStarting) << "but for the next goal";
 }
 
 TEST_F(Supervisor, blindnessOnceInAWhileDoesNotAddUp) {
@@ -186,6 +255,7 @@ TEST_F(Supervisor, aRobotThatPreparesIsNotSilentAndSaysWhatItDoes) {
   }
   EXPECT_EQ(watch(0.1, "image").reason, "looking for the place") << "until something is seen";
   EXPECT_EQ(watch(1.0, "image").mode, Mode::kStopped) << "afterwards silence counts again";
+  supervisor_.trustPlace();
   EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
 }
 

@@ -2,9 +2,11 @@
 // correction.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "perennial/core/active_map.h"
 #include "perennial/core/along_path.h"
@@ -114,6 +116,51 @@ TEST(Odometer, refusesNonsenseAndKeepsWhatItHas) {
   EXPECT_NE(odometer.add(at(2.1, 100.0)), "") << "a jump";
   EXPECT_NEAR(odometer.newestDistance(), 0.5, 1e-12);
   EXPECT_EQ(odometer.add(at(2.1, 0.55)), "");
+}
+
+/// Why a step of an odometer with its defaults is refused, at 1 m/s before.
+std::string stepOf(double step_m, double after_s) {
+  Odometer odometer;
+  for (int i = 0; i <= 10; ++i) {
+    EXPECT_EQ(odometer.add(at(after_s * i, after_s * i)), "");
+  }
+  return odometer.add(at(11 * after_s, 10 * after_s + step_m));
+}
+
+TEST(Odometer, refusesJumpsThatNoSuchRobotDrives) {
+  for (const double jump_m : {0.5, 0.9}) {
+    EXPECT_NE(stepOf(jump_m, 0.1).find("jumps"), std::string::npos) << jump_m;
+    EXPECT_NE(stepOf(-jump_m, 0.1), "") << "backwards, too";
+    EXPECT_NE(stepOf(jump_m, 0.02), "") << jump_m;
+  }
+  EXPECT_NE(stepOf(0.9, 0.2), "") << "of a slow odometry";
+}
+
+TEST(Odometer, believesWhatPeopleAndRobotsDrive) {
+  EXPECT_EQ(stepOf(0.15, 0.1), "") << "1.5 m/s at 10 Hz";
+  EXPECT_EQ(stepOf(0.5, 0.2), "") << "driven by hand, 2.5 m/s at 5 Hz";
+  EXPECT_EQ(stepOf(1.5, 1.0), "") << "after a pause of the network";
+  EXPECT_EQ(stepOf(0.04, 0.005), "") << "noise between samples that come fast";
+}
+
+TEST(Odometer, believesABurstThatWasStampedOnArrival) {
+  Odometer odometer;
+  double x_m = 0.0;
+  EXPECT_EQ(odometer.add(at(0.0, x_m)), "");
+  for (int i = 0; i < 10; ++i) {  // a second of 1.5 m/s at 10 Hz that comes all at once
+    EXPECT_EQ(odometer.add(at(1.0 + 0.001 * i, x_m += 0.15)), "") << i;
+  }
+  EXPECT_NEAR(odometer.newestDistance(), 1.5, 1e-9);
+}
+
+TEST(Odometer, believesNoisyStampsAndPlaces) {
+  Odometer odometer;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  for (int i = 0; i < 1000; ++i) {
+    const double stamp_s = 0.1 * i + std::clamp(noise(random), -0.04, 0.04);
+    ASSERT_EQ(odometer.add(at(stamp_s, 0.15 * i + noise(random), noise(random))), "") << i;
+  }
 }
 
 TEST(Odometer, keepsOnlyItsHistory) {

@@ -164,6 +164,12 @@ class Faults(unittest.TestCase):
         self.robot.odometry_changes = {"x": 1000.0}
         self.assert_fails_at_once("jumps")
 
+    def test_odometry_that_jumps_by_less_than_a_metre(self):
+        """9 m/s: no such robot drives so fast."""
+        self.interrupted()
+        self.robot.odometry_changes = {"x": self.robot.x + 0.9}
+        self.assert_fails_at_once("jumps")
+
     def test_image_of_another_size(self):
         self.interrupted()
         self.robot.image_changes = {"width": 160, "height": 100, "step": 160, "data": bytes(160 * 100)}
@@ -226,8 +232,8 @@ class Faults(unittest.TestCase):
         self.assertIn("did not move", result.message)
         self.assertFalse(os.path.exists(os.path.join(FOLDER, "standing.perennial")))
 
-    def assert_teaching_fails(self, reason, x):
-        """One bad sample ends the teaching, although good ones would follow, and the map there was stays as it is."""
+    def assert_teaching_fails(self, reason, spoil):
+        """Ends the teaching, although good data might follow, and the map there was stays as it is."""
         file = os.path.join(FOLDER, "path.perennial")
         with open(file, "rb") as stored:
             before = stored.read()
@@ -236,19 +242,55 @@ class Faults(unittest.TestCase):
         self.robot.speed = 0.5
         for _ in range(10):
             self.robot.step(BOTH)
-        self.robot.odometry_changes = {"x": x}
-        self.robot.step()
+        spoil()
         result = self.stack.result(self.stack.teach)
         self.assertFalse(result.success)
         self.assertIn(reason, result.message)
         with open(file, "rb") as stored:
             self.assertEqual(stored.read(), before)
 
+    def place_odometry(self, x):
+        self.robot.odometry_changes = {"x": x}
+        self.robot.step()
+
     def test_odometry_that_jumps_while_teaching(self):
-        self.assert_teaching_fails("odometry jumps", 3.5)
+        self.assert_teaching_fails("odometry jumps", lambda: self.place_odometry(3.5))
+
+    def test_odometry_that_jumps_by_less_than_a_metre_while_teaching(self):
+        self.assert_teaching_fails("odometry jumps", lambda: self.place_odometry(self.robot.x + 0.9))
 
     def test_odometry_of_nan_while_teaching(self):
-        self.assert_teaching_fails("not finite", math.nan)
+        self.assert_teaching_fails("not finite", lambda: self.place_odometry(math.nan))
+
+    def freeze(self):
+        self.robot.frozen = True
+        frozen_at = self.robot.x
+        while not self.stack.done(self.stack.teach):
+            self.assertLess(self.robot.x, frozen_at + 0.5)
+            self.robot.step(["teach_recorder"])
+
+    def test_frozen_camera_while_teaching(self):
+        self.assert_teaching_fails("the camera repeats one image", self.freeze)
+
+    def send_old_image(self):
+        old = rospy.Time.from_sec(self.robot.time - 1.0)
+        self.robot.image_changes = {"header": self.robot.image_message(old).header}
+        self.robot.step()
+
+    def test_image_stamps_that_go_back_while_teaching(self):
+        self.assert_teaching_fails("stamps of the images go back", self.send_old_image)
+
+    def test_the_same_image_while_standing_is_no_fault(self):
+        """As a lossless still is, or a simulator's."""
+        self.stack.settle()
+        self.stack.start(self.stack.teach, TeachGoal(map_name="paused", overwrite=True))
+        for frozen in (True, False):
+            self.robot.frozen, self.robot.speed = frozen, 0.0 if frozen else 0.5
+            for _ in range(20):
+                self.robot.step(BOTH)
+        self.stack.teach.cancel_goal()
+        result = self.stack.result(self.stack.teach)
+        self.assertTrue(result.success, result.message)
 
     def test_images_of_another_size_while_teaching_are_left_out(self):
         self.stack.settle()

@@ -10,7 +10,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
-from perennial_nav.msg import NavigationState
+from perennial_nav.msg import NavigationState, RepeatGoal
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Joy, LaserScan, Range
 from std_msgs.msg import Bool
@@ -40,6 +40,7 @@ class GuardedRobot(FakeRobot):
         self.calm()
 
     def calm(self):
+        self.wall_x = None  # a wall at this place, for the range finder
         self.silent = set()  # names of what says nothing
         self.late = {}  # seconds by name: how old what it says is
         self.held, self.range_m, self.scan_m, self.flag = True, 5.0, 5.0, False
@@ -50,9 +51,10 @@ class GuardedRobot(FakeRobot):
 
     def tick(self, seconds):
         super().tick(seconds)
+        range_m = self.range_m if self.wall_x is None else max(0.0, min(5.0, self.wall_x - self.x))
         messages = {
             "joy": Joy(buttons=[0, 0, int(self.held)]),
-            "range": Range(min_range=0.02, max_range=6.0, range=self.range_m),
+            "range": Range(min_range=0.02, max_range=6.0, range=range_m),
             "scan": LaserScan(angle_min=-0.2, angle_increment=0.1, range_max=8.0, ranges=[self.scan_m] * 5),
             "flag": Bool(self.flag),
         }
@@ -209,12 +211,28 @@ class Stops(unittest.TestCase):
     def test_range_finder_slows_then_holds(self):
         self.robot.range_m = 1.0
         self.steps(5)
-        self.assertAlmostEqual(self.robot.command().linear.x, 0.25, delta=0.02)
+        self.assertAlmostEqual(self.robot.command().linear.x, 0.3, delta=0.02)  # 0.2 + 0.8 / 2 of 0.5 m/s
         self.robot.range_m = 0.3
         self.steps(3)
         self.assert_stands("in the way, 0.3 m", NavigationState.HOLDING)
         self.robot.range_m = 5.0
         self.assert_goes_on(2)
+
+    def test_a_wall_on_a_slow_path_holds(self):
+        """The robot comes near it slower and slower, and is held at last: it is not taken for one that is blocked."""
+        self.stack.end(self.stack.repeat)
+        result = self.stack.teach_path("slow", overwrite=True, length_m=4.0, speed=0.3)
+        self.assertTrue(result.success, result.message)
+        self.stack.begin_repeat("slow")
+        self.robot.wall_x = 2.5
+        self.stack.drive(lambda: self.stack.states[-1].state == NavigationState.HOLDING)
+        self.assert_stands("in the way, 0.5 m", NavigationState.HOLDING)
+        self.assertAlmostEqual(self.robot.x, 2.0, delta=0.1)
+        self.robot.wall_x = None
+        self.assert_goes_on(2)
+        self.stack.drive(lambda: False)
+        result = self.stack.result(self.stack.repeat)
+        self.assertTrue(result.success, result.reason)
 
     def test_laser_scanner_holds(self):
         self.robot.scan_m = 0.4
@@ -301,6 +319,29 @@ class Stops(unittest.TestCase):
                 break
         self.assert_fails("not recognised")
 
+    def begin_unseeing(self, x):
+        """A goal for a robot that does not recognise the path where it stands."""
+        self.stack.end(self.stack.repeat)
+        self.stack.settle(x)
+        self.stack.start(self.stack.repeat, RepeatGoal(map_name="path"))
+
+    def test_started_elsewhere_it_does_not_move_and_gives_up(self):
+        self.begin_unseeing(5000.5)
+        self.steps(10)
+        self.assert_stands("not recognised here", NavigationState.STARTING)
+        self.steps(60)
+        self.assert_fails("not recognised here")
+        self.assertEqual(self.robot.x, 5000.5)
+
+    def test_started_with_a_covered_camera_it_goes_on_when_it_sees(self):
+        self.begin_unseeing(0.0)
+        for level in range(20):
+            self.step_blind(level)
+        self.assertEqual(self.robot.x, 0.0)
+        self.assert_state(NavigationState.STARTING, "not recognised here")
+        self.robot.image_changes = {}
+        self.assert_goes_on(4)
+
     def lines_of(self, traversals, after_step=lambda i: None):
         """Drives so many traversals; returns how many lines the nodes log meanwhile, and what the states were."""
         self.stack.end(self.stack.repeat)
@@ -338,9 +379,11 @@ class Stops(unittest.TestCase):
         self.assertLessEqual(len(lines), most(2), lines)
 
     def test_frozen_camera(self):
+        frozen_at = self.robot.x
         self.robot.frozen = True
-        self.steps(14)
+        self.steps(8)  # of 0.05 m
         self.assert_stands("frozen")
+        self.assertLess(self.robot.x, frozen_at + 0.35, "long before frozen_images have come")
         self.robot.frozen = False
         self.assert_goes_on()
 

@@ -6,15 +6,24 @@
 #include <string>
 #include <vector>
 
+#include "perennial/core/parameter_reader.h"
+
 namespace perennial {
 
+struct ImageWatchSettings {
+  int frozen_images = 10;          ///< so many identical images on the way: the camera is frozen; 0: never
+  double frozen_distance_m = 0.2;  ///< two of them and so far between them: the same
+
+  /// Keys as the members are called. Throws ParameterError.
+  static ImageWatchSettings load(ParameterReader& reader);
+};
+
 /// Notices a camera that repeats one frame while the robot moves, and stamps that go backwards. Every real
-/// camera has noise, and a moving one never sees the same twice to the bit. Not thread-safe.
+/// camera has noise, and a moving one never sees the same twice to the bit. One that stands may: a still, or
+/// a simulator. Not thread-safe.
 class ImageWatch {
  public:
-  /// `frozen_images`: so many identical images in a row, with the robot moving meanwhile, are a frozen
-  /// camera; 0: never.
-  explicit ImageWatch(int frozen_images) : frozen_images_(frozen_images) {}
+  explicit ImageWatch(const ImageWatchSettings& settings = {}) : settings_(settings) {}
 
   void reset();
 
@@ -25,7 +34,7 @@ class ImageWatch {
   std::string checkPixels(const std::uint8_t* pixels, std::size_t bytes, double travelled_m);
 
  private:
-  int frozen_images_;
+  ImageWatchSettings settings_;
   std::optional<double> newest_stamp_s_;
   std::vector<std::uint8_t> last_;
   int repeated_ = 0;           ///< how often in a row the last image has been repeated

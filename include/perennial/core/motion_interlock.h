@@ -28,6 +28,7 @@ struct ObstacleSettings {
   bool flag = false;             ///< whether a boolean detector must be there
   double slow_distance_m = 1.5;  ///< from here on the robot slows down
   double stop_distance_m = 0.5;  ///< here it stands
+  double least_speed = 0.2;      ///< share of the speed just before it stands, so that it gets there
   double half_width_m = 0.4;     ///< of the corridor ahead of the scanner in which something is in the way
   double timeout_s = 0.5;        ///< a sensor silent for so long stops the robot
 
@@ -62,6 +63,9 @@ struct MotionPermit {
   double speed_factor = 1.0;
   std::string reason;  ///< for a person; empty when nothing is in the way
   Velocity manual;
+
+  /// Whether the robot is driven slower than it wants to, or not at all.
+  bool hinders() const { return kind != Kind::kGo || speed_factor < 1.0; }
 };
 
 enum class EmergencyStop { kTopic, kService };

@@ -18,8 +18,8 @@ struct OdometrySample {
 };
 
 struct OdometerSettings {
-  double max_speed_m_s = 10.0;  ///< a sample that implies a higher speed is a jump
-  double history_s = 10.0;      ///< how far back distances can be asked for
+  double max_speed_m_s = 3.0;  ///< a sample that implies a higher speed is a jump; not of less than 0.1 m
+  double history_s = 10.0;     ///< how far back distances can be asked for
 
   /// Keys as the members are called. Throws ParameterError.
   static OdometerSettings load(ParameterReader& reader);

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 
+#include "perennial/core/image_watch.h"
 #include "perennial/core/odometer.h"
 #include "perennial/core/restart_watch.h"
 #include "perennial/core/teach_session.h"
@@ -26,9 +27,10 @@ namespace perennial {
 
 /// Parameters of the node itself; groups: extraction, teaching, odometer.
 struct TeachRecorderSettings {
-  std::string map_folder;    ///< where maps are stored; required
-  std::string camera = "";   ///< name stored with the map; empty: the images' frame
-  bool every_image = false;  ///< never drop an image, however long its odometry takes to come (bags)
+  std::string map_folder;          ///< where maps are stored; required
+  std::string camera = "";         ///< name stored with the map; empty: the images' frame
+  bool every_image = false;        ///< never drop an image, however long its odometry takes to come (bags)
+  ImageWatchSettings image_watch;  ///< its keys are the node's own
 
   static TeachRecorderSettings load(ParameterReader& reader);
 };
@@ -76,6 +78,7 @@ class TeachRecorder {
   Odometer odometer_;
   RestartWatch odometry_watch_;
   ImageQueue images_;
+  ImageWatch image_watch_;
   std::optional<Velocity> last_command_;
   geometry_msgs::PoseStamped newest_pose_;
   nav_msgs::Path path_;
