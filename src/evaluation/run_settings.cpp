@@ -13,7 +13,7 @@ namespace perennial {
 namespace {
 
 ParameterValue scalar(const YAML::Node& node) {
-  const std::string text = node.Scalar();
+  const std::string& text = node.Scalar();
   if (text == "true" || text == "false") {
     return text == "true";
   }
@@ -118,7 +118,7 @@ void RunSettings::set(const std::string& assignment) {
 std::string RunSettings::name() const {
   std::string name = strategy_;
   for (const auto& [key, value] : assignments_) {
-    name += "," + key + "=" + value;
+    name.append(",").append(key).append("=").append(value);
   }
   std::replace(name.begin(), name.end(), '/', '.');
   name.erase(std::remove(name.begin(), name.end(), ' '), name.end());

@@ -129,6 +129,7 @@ AnchoredMap::Estimate AnchoredMap::estimate(const std::vector<Pair>& pairs) cons
     cohort_sizes[pair.cohort] += 1.0;
   }
   std::vector<std::pair<double, double>> votes;
+  votes.reserve(pairs.size());
   for (const Pair& pair : pairs) {
     votes.emplace_back(pair.difference, 1.0 / (noise + cohort_sizes[pair.cohort] * pair.cohort_variance));
   }
