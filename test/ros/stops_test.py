@@ -221,13 +221,13 @@ class Stops(unittest.TestCase):
     def test_a_wall_on_a_slow_path_holds(self):
         """The robot comes near it slower and slower, and is held at last: it is not taken for one that is blocked."""
         self.stack.end(self.stack.repeat)
-        result = self.stack.teach_path("slow", overwrite=True, length_m=4.0, speed=0.3)
+        result = self.stack.teach_path("slow", overwrite=True, length_m=2.5, speed=0.3)
         self.assertTrue(result.success, result.message)
         self.stack.begin_repeat("slow")
-        self.robot.wall_x = 2.5
+        self.robot.wall_x = 1.8
         self.stack.drive(lambda: self.stack.states[-1].state == NavigationState.HOLDING)
         self.assert_stands("in the way, 0.5 m", NavigationState.HOLDING)
-        self.assertAlmostEqual(self.robot.x, 2.0, delta=0.1)
+        self.assertAlmostEqual(self.robot.x, 1.3, delta=0.1)
         self.robot.wall_x = None
         self.assert_goes_on(2)
         self.stack.drive(lambda: False)
