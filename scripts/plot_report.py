@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Plots and page of `rosrun perennial_nav report`: plot_report.py OUT LATITUDE LONGITUDE RUN...
 
-Each RUN is a folder written by `evaluate`; OUT holds comparisons.csv already. Latitude and longitude, in degrees, are of
+Each RUN is a folder written by `evaluate`, with strategies or --pairs; OUT holds comparisons.csv already. Latitude and longitude, in degrees, are of
 where the images were taken: day and night go by the sun's elevation there.
 """
 import base64
@@ -25,6 +25,8 @@ import matplotlib.ticker  # noqa: E402
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 DASHES = ["-", "--", ":"]
 MOST_CURVES = 12
+RIGHT_PX = 35.0  # what a confidence is about
+FEWEST_DRAWN = 5  # answers in a tenth of confidence; of fewer nothing can be seen
 SEASONS = {12: "winter", 1: "winter", 2: "winter", 3: "spring", 4: "spring", 5: "spring",
            6: "summer", 7: "summer", 8: "summer", 9: "autumn", 10: "autumn", 11: "autumn"}
 SEASON_COLOURS = {"winter": "#dfe9f5", "spring": "#e6f3e0", "summer": "#fdf6d8", "autumn": "#f8e7d8"}
@@ -40,14 +42,11 @@ class Run:
             self.summary = json.load(stream)
         with open(os.path.join(folder, "errors.csv"), encoding="utf-8", newline="") as stream:
             self.rows = list(csv.DictReader(stream))
-        with open(os.path.join(folder, "lives.csv"), encoding="utf-8", newline="") as stream:
-            self.lives = [(int(row["age_traversals"]), int(row["dropped"]), int(row["kept"]))
-                          for row in csv.DictReader(stream)]
-        self.costs = []
-        if os.path.exists(os.path.join(folder, "cost.csv")):  # not of bags through the nodes
-            with open(os.path.join(folder, "cost.csv"), encoding="utf-8", newline="") as stream:
-                self.costs = [(int(row["registration"]), float(row["registration_ms"]), float(row["learning_ms"]))
-                              for row in csv.DictReader(stream)]
+        self.of_pairs = bool(self.rows) and "map_traversal" in self.rows[0]
+        self.lives = [(int(row["age_traversals"]), int(row["dropped"]), int(row["kept"]))
+                      for row in rows_if_any(folder, "lives.csv")]
+        self.costs = [(int(row["registration"]), float(row["registration_ms"]), float(row["learning_ms"]))
+                      for row in rows_if_any(folder, "cost.csv")]
         for row in self.rows:
             row["time"] = parse_time(row["stamp"])
             row["light"] = light_at(row["time"], site)
@@ -64,6 +63,15 @@ class Run:
         for name in sorted(traversals):
             rows = traversals[name]
             yield rows[0]["time"], rows[0]["light"], [row["error"] for row in rows if row["error"] is not None]
+
+
+def rows_if_any(folder, name):
+    """Rows of a table that not every run has."""
+    path = os.path.join(folder, name)
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
 
 
 def sun_elevation_deg(time, latitude_deg, longitude_deg):
@@ -104,12 +112,12 @@ def rank(run):
 
 
 def chosen(runs):
-    """Runs to draw: all if they are few, else the best of each strategy."""
+    """Runs to draw: all if they are few, else the best of each strategy, and the best of pairs."""
     if len(runs) <= MOST_CURVES:
         return sorted(runs, key=rank)
     best = {}
     for run in sorted(runs, key=rank):
-        best.setdefault(run.summary["strategy"], run)
+        best.setdefault(run.name if run.of_pairs else run.summary["strategy"], run)
     return list(best.values())[:MOST_CURVES]
 
 
@@ -162,6 +170,46 @@ def plot_distribution(runs, axes):
     axes.grid(alpha=0.3)
     legend(axes)
     return ("run", "threshold_px", "probability"), rows
+
+
+def interval(right, count):
+    """95 % interval of a share (Wilson, Journal of the American Statistical Association 1927)."""
+    z = 1.96
+    middle = (right + z * z / 2) / (count + z * z)
+    half = z / (count + z * z) * math.sqrt(right * (count - right) / count + z * z / 4)
+    return middle - half, middle + half
+
+
+def plot_reliability(runs, axes):
+    """Of the answers whose ground truth is known, in tenths of confidence; tenths of few answers in the table only."""
+    rows = []
+    style = styles(runs)
+    axes.plot([0, 1], [0, 1], color="#888888", linewidth=0.8, label="as it should be")
+    for run in runs:
+        tenths = {}
+        for row in run.rows:
+            if row["error"] is not None:
+                confidence = float(row["confidence"])
+                tenths.setdefault(min(9, int(10 * confidence)), []).append((confidence, abs(row["error"]) <= RIGHT_PX))
+        points = []
+        for tenth, answers in sorted(tenths.items()):
+            right = sum(is_right for _, is_right in answers)
+            point = (mean([confidence for confidence, _ in answers]), right / len(answers), *interval(right, len(answers)))
+            rows.append((run.name, tenth / 10, (tenth + 1) / 10, len(answers), *("%.6g" % value for value in point)))
+            if len(answers) >= FEWEST_DRAWN:
+                points.append(point)
+        xs, ys = [p[0] for p in points], [p[1] for p in points]
+        bars = [[max(0.0, p[1] - p[2]) for p in points], [max(0.0, p[3] - p[1]) for p in points]]
+        axes.errorbar(xs, ys, bars, label=run.label, marker="o", markersize=5, linewidth=1.6, elinewidth=0.6, capsize=2,
+                      **style[run.name])  # fmt: skip
+    axes.set_xlim(0, 1.01)
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel("confidence (mean of each tenth)")
+    axes.set_ylabel("share right within %g px" % RIGHT_PX)
+    axes.set_title("Reliability of the confidence (bars: 95 % intervals; above the diagonal: too modest)")
+    axes.grid(alpha=0.3)
+    legend(axes)
+    return ("run", "from", "to", "answers", "mean_confidence", "share_right", "low", "high"), rows
 
 
 def mark_seasons(axes, times):
@@ -302,9 +350,16 @@ def plot_cost(runs, axes):
     return ("run", "registrations_to", "registration_ms", "learning_ms"), rows
 
 
-FIGURES = [("distribution", plot_distribution), ("time", plot_time), ("drift", plot_drift), ("frames", plot_frames),
-           ("lives", plot_lives),
-           ("cost", plot_cost)]
+def of_strategies(runs):
+    return [run for run in runs if not run.of_pairs]
+
+
+# Name, function, and the runs that have what it draws.
+FIGURES = [("distribution", plot_distribution, lambda runs: runs),
+           ("reliability", plot_reliability, lambda runs: [run for run in runs if run.of_pairs]),
+           ("time", plot_time, of_strategies), ("drift", plot_drift, of_strategies), ("frames", plot_frames, of_strategies),
+           ("lives", plot_lives, lambda runs: [run for run in runs if run.lives]),
+           ("cost", plot_cost, lambda runs: [run for run in runs if run.costs])]
 
 
 def write_csv(path, header, rows):
@@ -338,15 +393,15 @@ def table(header, rows):
 
 
 def table_of_runs(out, runs):
-    header = ["run", "registrations", "answered %", "within 5 px %", "10", "20", "35", "50", "mean px", "median px",
-              "mean signed px", "ms per registration", "ms per extraction"]
+    header = ["run", "registrations", "answered %", "within 5 px %", "10", "20", "35", "50", "at 99 % precision %", "mean px",
+              "median px", "mean signed px", "ms per registration", "ms per extraction"]
     rows = []
     for run in sorted(runs, key=rank):
         s = run.summary
         rows.append([run.name, s["registrations"], number(100 * s["answered"], 1)] +
                     [number(100 * s["within_px"][key], 1) for key in ("5", "10", "20", "35", "50")] +
-                    [number(s["mean_error_px"]), number(s["median_error_px"]), number(s["mean_signed_error_px"]),
-                     number(s["ms_per_registration"]), number(s["ms_per_extraction"])])
+                    [number(100 * s["answered_at_99_precision"], 1) if run.of_pairs else "", number(s["mean_error_px"]),
+                     number(s["median_error_px"]), number(s.get("mean_signed_error_px")), number(s["ms_per_registration"]), number(s["ms_per_extraction"])])
     write_csv(os.path.join(out, "runs.csv"), header, rows)
     return table(header, rows)
 
@@ -398,12 +453,13 @@ th:first-child, td:first-child { text-align: left; }"""
 def page(out, runs):
     drawn = chosen(runs)
     shorten_labels(drawn)
-    parts = ["<h1>Map strategies compared</h1>",
+    title = "Map strategies compared" if of_strategies(runs) else "Registrations compared"
+    parts = ["<h1>%s</h1>" % title,
              "<p>%d runs on: %s.</p>" % (len(runs), html.escape("; ".join(sorted({r.summary["input"] for r in runs}))))]
     if len(drawn) < len(runs):
         parts.append("<p>Drawn and compared below is the best run of each strategy (by the share within 20 px, then "
                      "the mean error); the table holds all of them, comparisons.csv all pairs.</p>")
-    parts += [draw(out, name, function, drawn) for name, function in FIGURES]
+    parts += [draw(out, name, function, fitting(drawn)) for name, function, fitting in FIGURES if fitting(drawn)]
     parts += ["<h2>By day and night</h2>", "<p>Shares within 20 px. Day: the sun is up; twilight: it is less than 6 degrees "
               "below the horizon.</p>", table_by_light(out, drawn)]
     parts += ["<h2>All runs</h2>", "<p>Shares are of all registrations: a missing answer counts as wrong. Means and the "
@@ -412,8 +468,8 @@ def page(out, runs):
               "are counted. The plain p-value is what the literature reports; Holm's correction accounts for the number "
               "of comparisons.</p>", table_of_comparisons(out, drawn)]
     with open(os.path.join(out, "report.html"), "w", encoding="utf-8") as stream:
-        stream.write("<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Map strategies compared"
-                     "</title><style>%s</style></head><body>%s</body></html>" % (STYLE, "\n".join(parts)))
+        stream.write("<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>%s"
+                     "</title><style>%s</style></head><body>%s</body></html>" % (title, STYLE, "\n".join(parts)))
 
 
 def main(arguments):

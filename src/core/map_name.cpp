@@ -86,7 +86,7 @@ std::string mapFile(const std::string& folder, const std::string& name) {
 }
 
 std::string existingMapFile(const std::string& folder, const std::string& name) {
-  const std::string file = mapFile(folder, name);
+  std::string file = mapFile(folder, name);
   std::error_code problem;
   if (!fs::exists(file, problem)) {
     throw MapError("there is no map '" + name + "' in folder '" + folder + "'; " + listed(listMaps(folder)));

@@ -95,7 +95,7 @@ std::string ParameterReader::text(const std::string& key, const std::string& def
 
 std::string ParameterReader::choice(const std::string& key, const std::string& default_value,
                                     const std::vector<std::string>& allowed) {
-  const std::string value = text(key, default_value);
+  std::string value = text(key, default_value);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
     fail(key, "is '" + value + "', but must be one of: " + joined(allowed));
   }

@@ -102,7 +102,7 @@ void requireSamePlaces(const Traversal& traversal, const Traversal& first) {
 std::vector<int> offsetsOf(const Traversal& traversal, const std::string& folder,
                            const std::string& map_name) {
   const std::string file = folder + "/" + map_name + "_GT.txt";
-  const std::vector<int> offsets = readReferenceOffsets(file);
+  std::vector<int> offsets = readReferenceOffsets(file);
   if (offsets.size() != traversal.maps.size()) {
     throw DatasetError(file + ":" + std::to_string(offsets.size()) + ": is the last of " +
                        std::to_string(offsets.size()) + " lines, but there are " +

@@ -50,6 +50,7 @@ void RepeatSession::requireSuitable(const cv::Mat& image, const std::string& enc
 NavigationStep RepeatSession::step(double stamp_s, double travelled_m, const cv::Mat& image) {
   NavigationStep step;
   stepInto(stamp_s, travelled_m, image, step);
+  correctAlongPath(step);
   return step;
 }
 
@@ -57,9 +58,8 @@ void RepeatSession::stepInto(double stamp_s, double travelled_m, const cv::Mat& 
   if (!start_travelled_m_) {
     start_travelled_m_ = travelled_m;
   }
-  const double interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
+  step.interval_m = previous_travelled_m_ ? travelled_m - *previous_travelled_m_ : 0.0;
   previous_travelled_m_ = travelled_m;
-
   step.stamp_s = stamp_s;
   step.distance_m = distance(travelled_m);
   const ActiveMap* map = window_.nearest(step.distance_m);
@@ -71,8 +71,7 @@ void RepeatSession::stepInto(double stamp_s, double travelled_m, const cv::Mat& 
   extractor_.extractInto(image, step.view);
   registerInto(*registration_, *map, step.view, workspace_, step.registration);
   step.positions = map->alternatives[step.registration.alternative].positions;
-  correctDistance(step, interval_m);
-  step.velocity = velocityFor(step, interval_m);
+  step.velocity = velocityFor(step);
   window_.forgetBefore(step.distance_m, kKeepBehind_m);
 }
 
@@ -81,7 +80,7 @@ PlaceEvidence RepeatSession::evidence(const ActiveMap& map, const FeatureSet& vi
   return {map.distance_m, neighbour_.result.inliers};
 }
 
-void RepeatSession::correctDistance(const NavigationStep& step, double interval_m) {
+void RepeatSession::correctAlongPath(const NavigationStep& step) {
   if (!along_path_.enabled() || !step.registration.result.displacement_px || step.local_map == 0) {
     return;
   }
@@ -94,14 +93,14 @@ void RepeatSession::correctDistance(const NavigationStep& step, double interval_
       placeOfView(evidence(*before, step.view), {step.local_map_distance_m, step.registration.result.inliers},
                   evidence(*after, step.view));
   if (seen_m) {
-    along_path_.update(step.distance_m, *seen_m, interval_m);
+    along_path_.update(step.distance_m, *seen_m, step.interval_m);
   }
 }
 
-Velocity RepeatSession::velocityFor(const NavigationStep& step, double interval_m) const {
+Velocity RepeatSession::velocityFor(const NavigationStep& step) const {
   // The command holds until the next image: the velocity taught half an image's way ahead is its best mean.
   // Looked up at the image itself, every curve would be entered that much too late.
-  const double preview_m = std::clamp(interval_m / 2.0, 0.0, kLongestPreview_m);
+  const double preview_m = std::clamp(step.interval_m / 2.0, 0.0, kLongestPreview_m);
   return steer(profile_.travellingAt(step.distance_m + preview_m), step.registration.result.displacement_px,
                focal_length_px_, steering_);
 }

@@ -51,8 +51,10 @@ RunErrors loadRunErrors(const std::string& folder, const std::string& name) {
   const CsvTable table = CsvTable::load(folder + "/errors.csv");
   RunErrors run;
   run.name = name;
+  const bool of_pairs = table.hasColumn("map_traversal");
   for (const CsvRow& row : table.rows()) {
-    run.keys.push_back(table.text(row, "traversal") + "@" + table.text(row, "distance_m"));
+    run.keys.push_back(table.text(row, "traversal") + "@" + table.text(row, "distance_m") +
+                       (of_pairs ? "@" + table.text(row, "map_traversal") : ""));
     const bool answered = !table.text(row, "error_px").empty();
     run.errors_px.push_back(answered ? std::abs(table.number(row, "error_px"))
                                      : std::numeric_limits<double>::quiet_NaN());

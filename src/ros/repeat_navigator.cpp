@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <utility>
 
 #include "perennial/core/error.h"
@@ -327,10 +328,12 @@ void RepeatNavigator::process(const sensor_msgs::ImageConstPtr& image, double tr
   if (!run_) {
     return;
   }
+  std::this_thread::yield();  // roscpp sends by a thread of its own, which must not wait for what follows
   report(step_, image);
   if (run_->atEnd()) {
     completeTraversal(image->header.stamp);
   } else {
+    run_->session->correctAlongPath(step_);  // only now: it takes as long again, and the command is out
     watchProgress(image->header.stamp);
   }
 }

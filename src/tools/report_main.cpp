@@ -22,8 +22,9 @@ namespace {
 
 constexpr char kUsage[] = R"(usage: report RUN... --out DIR [--site LATITUDE,LONGITUDE]
 
-Compares runs of `evaluate`: folders with errors.csv, lives.csv and summary.json, or folders of such folders. Writes
-report.html, which holds everything, and the figures beside it as PNG and SVG, the tables as CSV. The site, in degrees north and east,
+Compares runs of `evaluate`, with strategies or --pairs: folders with errors.csv and summary.json, or folders of such folders.
+Writes report.html, which holds everything, and the figures beside it as PNG and SVG, the tables as CSV; of pairs also how
+reliable the confidence is. The site, in degrees north and east,
 is where the images were taken: day and night go by the sun's elevation there. Default: that of the embedded park, 50,14.4.
 )";
 

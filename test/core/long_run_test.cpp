@@ -89,6 +89,7 @@ class LongRun : public ::testing::Test {
         session.add(manager.activeMap(index));
       }
       session.stepInto(now_s_, travelled_m, views_[static_cast<std::size_t>(turned)], step_);
+      session.correctAlongPath(step_);
       supervisor_.see(now_s_, travelled_m, sightOf(step_.registration.result), {});
       ASSERT_EQ(supervisor_.status().mode, NavigationMode::kRepeating) << "traversal " << number;
       ASSERT_NEAR(*step_.registration.result.displacement_px, -6.0 * (turned - 1), 1.0)

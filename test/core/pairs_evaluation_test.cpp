@@ -91,7 +91,7 @@ TEST_F(PairsEvaluationTest, registersEveryPairOfAPlaceWithTheRightSign) {
 
 TEST_F(PairsEvaluationTest, writesWhatOthersRead) {
   const PairsEvaluation evaluation = evaluatePairs(loadDataset(folder_ / ""), {});
-  writePairs(folder_ / "out", {{"registration/ratio", "0.7"}}, evaluation);
+  writePairs(folder_ / "out", "michigan/manifest.csv", {{"registration/ratio", "0.7"}}, evaluation);
   const CsvTable table = CsvTable::load(folder_ / "out/errors.csv");
   ASSERT_EQ(table.rows().size(), 6U);
   const CsvRow& row = table.rows().front();

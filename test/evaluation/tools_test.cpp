@@ -113,6 +113,42 @@ TEST_F(ToolsTest, aSweepIsRunOnceAndReportedOn) {
   EXPECT_EQ(page.find("src=\"http"), std::string::npos) << "self-contained";
 }
 
+TEST_F(ToolsTest, pairsAreReportedOnWithTheReliabilityOfTheirConfidence) {
+  for (const std::string method : {"robust", "histogram"}) {
+    const Result pairs = run(std::string(EVALUATE) + " --pairs " + folder_ / "data" + " --out " +
+                             folder_ / ("pairs/" + method) + " --set registration/method=" + method);
+    ASSERT_EQ(pairs.status, 0) << pairs.output;
+  }
+  const Result report = run(std::string(REPORT) + " " + folder_ / "pairs" + " --out " + folder_ / "report");
+  ASSERT_EQ(report.status, 0) << report.output;
+  const CsvTable comparisons = CsvTable::load(folder_ / "report/comparisons.csv");
+  ASSERT_EQ(comparisons.rows().size(), 1U);
+  EXPECT_EQ(comparisons.number(comparisons.rows()[0], "pairs"), 15.0) << "each pair with itself";
+
+  const CsvTable reliability = CsvTable::load(folder_ / "report/reliability.csv");
+  for (const std::string method : {"robust", "histogram"}) {
+    double answers = 0.0;
+    double confidence = 0.0;
+    for (const CsvRow& row : reliability.rows()) {
+      if (reliability.text(row, "run") == method) {
+        answers += reliability.number(row, "answers");
+        confidence += reliability.number(row, "answers") * reliability.number(row, "mean_confidence");
+        EXPECT_EQ(reliability.number(row, "share_right"), 1.0);
+        EXPECT_LT(reliability.number(row, "low"), 1.0);
+      }
+    }
+    double sum = 0.0;
+    const CsvTable errors = CsvTable::load(folder_ / ("pairs/" + method + "/errors.csv"));
+    for (const CsvRow& row : errors.rows()) {
+      sum += errors.number(row, "confidence");
+    }
+    EXPECT_EQ(answers, 15.0) << method;
+    EXPECT_NEAR(confidence, sum, 1e-3) << method;
+  }
+  EXPECT_GT(std::filesystem::file_size(folder_ / "report/reliability.png"), 1000U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report/lives.png")) << "pairs learn nothing";
+}
+
 TEST_F(ToolsTest, mistakesAreSaidBeforeAnythingIsDone) {
   const std::string out = " --out " + folder_ / "run";
   const Result unknown = evaluate("--strategy staitc" + out);

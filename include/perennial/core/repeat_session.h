@@ -29,6 +29,7 @@ struct RepeatSettings {
 struct NavigationStep {
   double stamp_s = 0.0;
   double distance_m = 0.0;      ///< along the path, as assumed before the image was seen
+  double interval_m = 0.0;      ///< travelled since the image before
   std::uint32_t local_map = 0;  ///< index of the local map registered against
   double local_map_distance_m = 0.0;
   std::vector<std::uint32_t> positions;  ///< of the features registered: position in the stored local map
@@ -76,11 +77,14 @@ class RepeatSession {
   /// Features as the map has them. `image`: as requireSuitable() wants it, CV_8UC1.
   void extractInto(const cv::Mat& image, FeatureSet& view) { extractor_.extractInto(image, view); }
 
-  /// Registers the image and steers. `image`: CV_8UC1. Must be ready().
+  /// Registers the image, steers, and corrects the distance. `image`: CV_8UC1. Must be ready().
   NavigationStep step(double stamp_s, double travelled_m, const cv::Mat& image);
-  /// The same into a step whose memory is used again: once it has served for as many features, nothing is
-  /// allocated.
+  /// Registers the image and steers, into a step whose memory is used again: once it has served for as many
+  /// features, nothing is allocated. The distance is left to correctAlongPath(), so that the velocity need
+  /// not wait for it.
   void stepInto(double stamp_s, double travelled_m, const cv::Mat& image, NavigationStep& step);
+  /// Corrects the distance by what the newest step's view says, for the images that follow.
+  void correctAlongPath(const NavigationStep& step);
 
   /// Steering and registration may change on the way; a camera's focal length may become known.
   void setSteering(const SteeringSettings& steering) { steering_ = steering; }
@@ -88,10 +92,9 @@ class RepeatSession {
   void setFocalLength(std::optional<double> focal_length_px) { focal_length_px_ = focal_length_px; }
 
  private:
-  void correctDistance(const NavigationStep& step, double interval_m);
   PlaceEvidence evidence(const ActiveMap& map, const FeatureSet& view);
-  /// Velocity to send until the next image, `interval_m` after the last one.
-  Velocity velocityFor(const NavigationStep& step, double interval_m) const;
+  /// Velocity to send until the next image.
+  Velocity velocityFor(const NavigationStep& step) const;
 
   MapMetadata map_;
   PathProfile profile_;

@@ -56,7 +56,8 @@ std::string errorsCsv(const std::vector<PairRecord>& records) {
   return text;
 }
 
-std::string summaryJson(const std::vector<std::pair<std::string, std::string>>& settings,
+std::string summaryJson(const std::string& input,
+                        const std::vector<std::pair<std::string, std::string>>& settings,
                         const PairsEvaluation& evaluation) {
   const PairsSummary summary = summarisePairs(evaluation.records);
   std::string assignments;
@@ -69,6 +70,7 @@ std::string summaryJson(const std::vector<std::pair<std::string, std::string>>& 
   }
   return "{\n  \"strategy\": \"none: all pairs\",\n  \"settings\": {" + assignments + "},\n" +    //
          "  \"version\": " + jsonText(PERENNIAL_VERSION) + ",\n" +                                //
+         "  \"input\": " + jsonText(input) + ",\n" +                                              //
          "  \"registrations\": " + std::to_string(summary.registrations) + ",\n" +                //
          "  \"answered\": " + number(summary.answered) + ",\n" +                                  //
          "  \"within_px\": {" + within + "},\n" +                                                 //
@@ -96,7 +98,8 @@ void writeFile(const std::filesystem::path& file, const std::string& content) {
 
 }  // namespace
 
-void writePairs(const std::string& folder, const std::vector<std::pair<std::string, std::string>>& settings,
+void writePairs(const std::string& folder, const std::string& input,
+                const std::vector<std::pair<std::string, std::string>>& settings,
                 const PairsEvaluation& evaluation) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -104,7 +107,7 @@ void writePairs(const std::string& folder, const std::vector<std::pair<std::stri
     throw Error("the folder " + folder + " cannot be created: " + error.message());
   }
   writeFile(std::filesystem::path(folder) / "errors.csv", errorsCsv(evaluation.records));
-  writeFile(std::filesystem::path(folder) / "summary.json", summaryJson(settings, evaluation));
+  writeFile(std::filesystem::path(folder) / "summary.json", summaryJson(input, settings, evaluation));
 }
 
 }  // namespace perennial

@@ -139,7 +139,7 @@ int evaluatePairsCommand(const std::vector<std::string>& arguments) {
   }
   const Dataset dataset = loadDataset(options.dataset);
   const PairsEvaluation evaluation = evaluatePairs(dataset, settings);
-  writePairs(options.out, options.assignments, evaluation);
+  writePairs(options.out, dataset.manifest, options.assignments, evaluation);
   print(evaluation);
   return 0;
 }

@@ -124,6 +124,7 @@ TEST(RepeatSession, stepsWithoutAllocating) {
       for (int i = 0; i < 4; ++i) {
         const double travelled_m = from_m + 0.1 * i;
         session.stepInto(travelled_m, travelled_m, i % 2 == 0 ? right : taught, step);
+        session.correctAlongPath(step);
       }
     };
     drive(1.7);

@@ -66,8 +66,9 @@ PairsSummary summarisePairs(const std::vector<PairRecord>& records);
 double answeredAtPrecision(const std::vector<PairRecord>& records, double precision, double within_px);
 
 /// Writes errors.csv, a line per pair, and summary.json. Creates the folder. Throws Error when it cannot be
-/// written. `settings`: key and value of what was not by default.
-void writePairs(const std::string& folder, const std::vector<std::pair<std::string, std::string>>& settings,
+/// written. `input`: what was evaluated; `settings`: key and value of what was not by default.
+void writePairs(const std::string& folder, const std::string& input,
+                const std::vector<std::pair<std::string, std::string>>& settings,
                 const PairsEvaluation& evaluation);
 
 }  // namespace perennial
