@@ -24,10 +24,15 @@ execute_process(
   RESULT_VARIABLE no_rtsp_server OUTPUT_QUIET ERROR_QUIET
 )
 if(no_rtsp_server)
-  message(STATUS "Test of cameleon_video_node left out: it needs gir1.2-gst-rtsp-server-1.0")
+  message(STATUS "Tests of cameleon_video_node left out: they need gir1.2-gst-rtsp-server-1.0")
 elseif(TARGET cameleon_video_node)
   add_rostest(ros/drivers/video.test DEPENDENCIES cameleon_video_node)
+  add_rostest(ros/drivers/killed_video.test
+    ARGS folder:=${scratch}/killed_video
+    DEPENDENCIES ${stack_nodes} ${cameleon_nodes} cameleon_video_node)
 endif()
+
+add_rostest(ros/loopback.test DEPENDENCIES ${stack_nodes} ${cameleon_nodes} teleop_node)
 
 # --- teach and repeat through them ---
 add_rostest(ros/two_machines.test

@@ -9,7 +9,7 @@ perennial_gtest(strategy_conformance_test ros/strategy_conformance_test.cpp
 set(perennial_nodes
   bag_player_node dataset_to_bag map_manager_node park_simulator_node perennial_strategies repeat_navigator_node
   teach_recorder_node)
-foreach(name faults localise master stops system)
+foreach(name faults localise master_restart stops system)
   add_rostest(ros/${name}.test ARGS folder:=${scratch}/${name} DEPENDENCIES ${perennial_nodes})
 endforeach()
 add_rostest(ros/parameters.test DEPENDENCIES ${perennial_nodes})

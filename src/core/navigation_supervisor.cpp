@@ -65,6 +65,7 @@ void NavigationSupervisor::start(double now_s) {
   sights_in_a_row_ = 0;
   blind_from_m_ = blind_m_ = 0.0;
   holding_since_s_.reset();
+  late_ = false;
   image_problem_.clear();
   starting_ = "waiting for image, odometry and local maps";
   set(NavigationMode::kStarting, starting_, 0.0);
@@ -77,8 +78,9 @@ const NavigationStatus& NavigationSupervisor::see(double stamp_s, double travell
   }
   seen_s_ = std::max(seen_s_, stamp_s);
   newest_s_ = std::max(newest_s_, stamp_s);
+  late_ = newest_s_ - stamp_s > settings_.sensor_timeout_s;
   noteSight(travelled_m, sight, permit);
-  decide(stamp_s, "", permit);
+  decide(newest_s_, "", permit);
   return status_;
 }
 
@@ -150,9 +152,10 @@ void NavigationSupervisor::decide(double now_s, const std::string& missing, cons
 bool NavigationSupervisor::mustStop(double now_s, const std::string& missing, const MotionPermit& permit) {
   const double silent_s = now_s - seen_s_;
   if (!image_problem_.empty() || silent_s > settings_.sensor_timeout_s) {
-    const std::string reason = !image_problem_.empty() ? image_problem_
-                                                       : "no " + (missing.empty() ? "image" : missing) +
-                                                             " for " + humanSeconds(silent_s);
+    const bool image = missing.empty() || missing == "image";
+    const std::string what = image ? (late_ ? "fresh image" : "image") : missing;
+    const std::string reason =
+        !image_problem_.empty() ? image_problem_ : "no " + what + " for " + humanSeconds(silent_s);
     if (silent_s > settings_.give_up_s) {
       fail(reason + "; check its topic");
     } else {

@@ -8,7 +8,7 @@
 
 #include "failing_calls.h"
 #include "faulty_vfs.h"
-#include "format1_map.h"
+#include "map_migration_fixture.h"
 
 namespace perennial {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using How = FailingCalls::How;
 
-class MapMigrationFaultTest : public testing::Test {
+class MapMigrationFaultTest : public MigrationFixture {
  protected:
   MapMigrationFaultTest() { disk_.reset(); }
   ~MapMigrationFaultTest() override {
@@ -24,17 +24,6 @@ class MapMigrationFaultTest : public testing::Test {
     disk_.reset();
   }
 
-  void copyPristine() {
-    fs::remove(kept_);
-    fs::remove(file_ + ".copy");
-    fs::remove(file_);  // not written over: it may have two names
-    fs::copy_file(FORMAT1_MAP, file_);
-  }
-  void migrate() const {
-    MapFile map(file_);
-    map.beginTraversal("latest/1", 1.0);
-    map.discardTraversal();
-  }
   /// "" when it went well. Only ever a MigrationError, with the file's name.
   std::string errorOfMigration() const {
     try {
@@ -48,30 +37,13 @@ class MapMigrationFaultTest : public testing::Test {
     }
     return "";
   }
-  void expectUntouched(const std::string& when) {
-    EXPECT_EQ(bytesOf(file_), original_) << when;
+  /// Old or new.
+  void expectWhole(const std::string& when) const {
     EXPECT_EQ(old_.differenceFrom(file_), "") << when;
-  }
-  void expectWhole(const std::string& when) {
-    EXPECT_EQ(old_.differenceFrom(file_), "") << when;
-    if (MapFile(file_).formatVersion() == 1) {
-      EXPECT_EQ(bytesOf(file_), original_) << when;
-    } else {
-      EXPECT_EQ(bytesOf(kept_), original_) << when;
-    }
-  }
-  void expectMigrated(const std::string& when) {
-    EXPECT_EQ(MapFile(file_).formatVersion(), 2U) << when;
-    expectWhole(when);
-    EXPECT_FALSE(fs::exists(file_ + ".copy")) << when;
+    EXPECT_EQ(bytesOf(MapFile(file_).formatVersion() == 1 ? file_ : kept_), original_) << when;
   }
 
   FaultyDisk& disk_ = FaultyDisk::instance();
-  TemporaryFolder folder_;
-  const std::string file_ = folder_ / "garden.perennial";
-  const std::string kept_ = file_ + ".format1";
-  const std::vector<char> original_ = bytesOf(FORMAT1_MAP);
-  const Format1Map old_;
 };
 
 TEST_F(MapMigrationFaultTest, aFullDiskHarmsNothingAndSaysWhatToDo) {

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include <algorithm>
 #include <functional>
 
-#include "format1_map.h"
+#include "map_migration_fixture.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/map_manager.h"
 #include "perennial/core/map_name.h"
@@ -36,40 +35,9 @@ class OtherProgram {
   sqlite3* database_ = nullptr;
 };
 
-class MapMigrationTest : public testing::Test {
+class MapMigrationTest : public MigrationFixture {
  protected:
-  MapMigrationTest() { fs::copy_file(FORMAT1_MAP, file_); }
-
-  std::vector<std::string> filesOfFolder() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(fs::path(file_).parent_path())) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  static void migrate(const std::string& file) {
-    MapFile map(file);
-    map.beginTraversal("latest/1", 1.0);
-    map.discardTraversal();
-  }
-  void expectMigrated(const std::string& what) {
-    EXPECT_EQ(old_.differenceFrom(file_), "") << what;
-    EXPECT_EQ(MapFile(file_).formatVersion(), 2U) << what;
-    EXPECT_EQ(bytesOf(kept_), original_) << what;
-    EXPECT_EQ(filesOfFolder(), (std::vector<std::string>{"garden.perennial", "garden.perennial.format1"}))
-        << what;
-  }
-  void expectUntouched(const std::string& what) {
-    EXPECT_EQ(bytesOf(file_), original_) << what;
-    EXPECT_EQ(old_.differenceFrom(file_), "") << what;
-  }
-
-  TemporaryFolder folder_;
-  const std::string file_ = folder_ / "garden.perennial";
-  const std::string kept_ = file_ + ".format1";
-  const std::vector<char> original_ = bytesOf(FORMAT1_MAP);
-  const Format1Map old_;
+  MapMigrationTest() { copyPristine(); }
 };
 
 TEST_F(MapMigrationTest, readingChangesNoByte) {
@@ -105,7 +73,7 @@ TEST_F(MapMigrationTest, aMapOfFormat1ThatNamesItsDescriptorKeepsIt) {
   OtherProgram(file_).run("PRAGMA user_version = 1");
   EXPECT_EQ(MapFile(file_).formatVersion(), 1U);
   EXPECT_EQ(MapFile(file_).metadata().extraction, metadata.extraction);
-  migrate(file_);
+  migrate();
   EXPECT_EQ(MapFile(file_).formatVersion(), 2U);
   EXPECT_EQ(MapFile(file_).metadata().extraction, metadata.extraction);
 }
@@ -121,8 +89,7 @@ TEST_F(MapMigrationTest, whateverWritesMigratesFirstAndKeepsEveryBit) {
       [](MapFile& map) { map.compact(10); },
   };
   for (std::size_t i = 0; i < writers.size(); ++i) {
-    fs::remove(kept_);
-    fs::copy_file(FORMAT1_MAP, file_, fs::copy_options::overwrite_existing);
+    copyPristine();
     {
       MapFile map(file_);
       writers[i](map);
@@ -150,25 +117,25 @@ TEST_F(MapMigrationTest, theTraversalThatMigratedIsLearnedAndTheNextDoesNotMigra
 TEST_F(MapMigrationTest, keepsThePermissionsOfTheFile) {
   const auto permissions = fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_write;
   fs::permissions(file_, permissions);
-  migrate(file_);
+  migrate();
   EXPECT_EQ(fs::status(file_).permissions(), permissions);
 }
 
 TEST_F(MapMigrationTest, aMapThatAnotherProgramWritesIsRefusedAsEver) {
   OtherProgram other(file_);
   other.run("BEGIN IMMEDIATE");
-  EXPECT_NE(errorOf([this] { migrate(file_); }).find("being updated by another program"), std::string::npos);
+  EXPECT_NE(errorOf([this] { migrate(); }).find("being updated by another program"), std::string::npos);
   EXPECT_EQ(filesOfFolder(), std::vector<std::string>{"garden.perennial"});
   other.run("ROLLBACK");
   expectUntouched("locked");
   other.run("BEGIN; SELECT * FROM meta");
-  migrate(file_);
+  migrate();
   expectMigrated("while another program reads");
 }
 
 TEST_F(MapMigrationTest, whoeverOpenedTheOriginalBeforeReadsOnButDoesNotWriteToIt) {
   MapFile before(file_);
-  migrate(file_);
+  migrate();
   EXPECT_TRUE(sameBits(before.read(1), old_.states[2][1]));
   fs::remove(kept_);  // so that only the check itself can prevent a second migration
   EXPECT_NE(errorOf([&] { before.beginTraversal("latest/1", 1.0); }).find("open it again"),
@@ -179,7 +146,7 @@ TEST_F(MapMigrationTest, whoeverOpenedTheOriginalBeforeReadsOnButDoesNotWriteToI
 
 TEST_F(MapMigrationTest, aFileWithTheNameOfTheKeptOriginalIsNotOverwritten) {
   std::ofstream(kept_) << "somebody's";
-  const std::string error = errorOf([this] { migrate(file_); });
+  const std::string error = errorOf([this] { migrate(); });
   for (const char* part : {"format version 1", "migrated to version 2", "move or remove"}) {
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
@@ -197,11 +164,9 @@ TEST_F(MapMigrationTest, whatAnInterruptedMigrationLeftBehindDoesNotHinderTheNex
       [this] { fs::copy_file(file_, kept_); },
   };
   for (std::size_t i = 0; i < remains.size(); ++i) {
-    fs::remove(kept_);
-    fs::remove(file_);
-    fs::copy_file(FORMAT1_MAP, file_);
+    copyPristine();
     remains[i]();
-    migrate(file_);
+    migrate();
     expectMigrated("remains " + std::to_string(i));
   }
 }
@@ -209,7 +174,7 @@ TEST_F(MapMigrationTest, whatAnInterruptedMigrationLeftBehindDoesNotHinderTheNex
 TEST_F(MapMigrationTest, aDamagedMapIsNotMigrated) {
   OtherProgram(file_).run("UPDATE image SET crc = crc + 1 WHERE local_map = 3");
   const std::vector<char> damaged = bytesOf(file_);
-  const std::string error = errorOf([this] { migrate(file_); });
+  const std::string error = errorOf([this] { migrate(); });
   EXPECT_NE(error.find("image of local map 3"), std::string::npos) << error;
   EXPECT_EQ(bytesOf(file_), damaged);
   EXPECT_EQ(filesOfFolder(), std::vector<std::string>{"garden.perennial"});

@@ -224,6 +224,22 @@ TEST_F(Supervisor, stopsWithoutDataAndGoesOnWithIt) {
   EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
 }
 
+TEST_F(Supervisor, anImageThatComesLateLetsNothingMove) {
+  startAndSee();
+  double stamp_s = now_s_;
+  EXPECT_EQ(watch(2.0, "image").mode, Mode::kStopped);
+  for (int i = 0; i < 20; ++i) {
+    stamp_s += 0.1;
+    const NavigationStatus& status = supervisor_.see(stamp_s, travelled_m_, kSure, {});
+    EXPECT_EQ(status.mode, Mode::kStopped);
+    EXPECT_EQ(status.speed_factor, 0.0);
+    EXPECT_NE(status.reason.find("no fresh image for"), std::string::npos) << status.reason;
+    watch(0.1, "image");
+    EXPECT_NE(supervisor_.status().reason.find("no fresh image for"), std::string::npos) << "the same reason";
+  }
+  EXPECT_EQ(see(kSure).mode, Mode::kRepeating);
+}
+
 TEST_F(Supervisor, givesUpWithoutData) {
   startAndSee();
   Mode mode = Mode::kRepeating;

@@ -48,6 +48,7 @@ class FakeRobot:
         self.image_changes = {}  # fields of the image message to set otherwise
         self.odometry_changes = {}
         self.sends_images = self.sends_odometry = True
+        self.image_late_s = self.odometry_late_s = 0.0  # how old they are when they come
         self.frozen = False  # the camera repeats one image
         self.images_taken = 0
         self.commands = []
@@ -83,16 +84,17 @@ class FakeRobot:
         self.clock.publish(Clock(rospy.Time.from_sec(self.time)))
 
     def step(self, wait_for=None):
-        """Time goes on by one image; returns its stamp. wait_for: names of nodes that must be done with it."""
+        """Time goes on by one image; returns its stamp. wait_for: names of nodes that must be done with it; late odometry
+        keeps them waiting."""
         speed = self.command().linear.x if self.speed is None else self.speed
         self.x += speed * STEP_S
         self.tick(STEP_S)
-        stamp = rospy.Time.from_sec(self.time)
+        stamp = rospy.Time.from_sec(self.time - self.image_late_s)
         if self.sends_odometry:
-            self.odometry.publish(self.odometry_message(stamp, speed))
+            self.odometry.publish(self.odometry_message(rospy.Time.from_sec(self.time - self.odometry_late_s), speed))
         if self.sends_images:
             self.images.publish(self.image_message(stamp))
-            for node in wait_for or []:
+            for node in (wait_for or []) if self.odometry_late_s == 0.0 else []:
                 answer = (node, stamp.to_nsec())
                 wait_until(lambda: self.has_answer(answer), "%s to process an image" % node)
         return stamp
@@ -128,6 +130,7 @@ class FakeRobot:
         self.x, self.left_px, self.speed, self.loop_m = x, 0, None, math.inf
         self.image_changes, self.odometry_changes = {}, {}
         self.sends_images = self.sends_odometry = True
+        self.image_late_s = self.odometry_late_s = 0.0
         self.frozen = False
         with self.lock:
             self.commands = []

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Teach and repeat with the real nodes and a fake robot: cancelling, sensor loss, bad goals, bad input."""
+import glob
 import math
 import os
 import shutil
@@ -195,10 +196,22 @@ class Faults(unittest.TestCase):
         self.assertIn("path", result.reason, "the maps there are must be named")
 
     def test_map_names_cannot_leave_the_folder(self):
-        for name in ("../evil", "/etc/passwd", "", ".hidden"):
-            self.assertFalse(self.stack.teach_path(name).success)
+        root = os.path.dirname(FOLDER)
+
+        def files():
+            here = [os.path.join(folder, name) for folder, _, names in os.walk(root) for name in names]
+            return sorted(here + glob.glob("/etc/passwd.*"))
+
+        before = files()
+        for name in ("../evil", os.path.join(root, "evil"), "/etc/passwd", "", ".hidden", "a/b", "evil\n", "x" * 101):
+            taught = self.stack.teach_path(name)
+            self.assertFalse(taught.success)
+            self.assertIn("cannot be the name of a map", taught.message)
             self.stack.begin_repeat(name)
-            self.assertFalse(self.stack.result(self.stack.repeat).success)
+            repeated = self.stack.result(self.stack.repeat)
+            self.assertFalse(repeated.success)
+            self.assertIn("cannot be the name of a map", repeated.reason)
+        self.assertEqual(files(), before)
 
     def test_start_beyond_the_path(self):
         self.stack.begin_repeat("path", start_distance_m=LENGTH_M + 1.0)
@@ -313,10 +326,10 @@ class Faults(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    FOLDER = rospy.myargv()[1]
-    shutil.rmtree(FOLDER, ignore_errors=True)
+    FOLDER = os.path.join(rospy.myargv()[1], "maps")
+    shutil.rmtree(os.path.dirname(FOLDER), ignore_errors=True)
     rospy.init_node("faults_test")
     try:
         rostest.rosrun("perennial_nav", "faults", Faults, sys.argv)
     finally:
-        shutil.rmtree(FOLDER, ignore_errors=True)
+        shutil.rmtree(os.path.dirname(FOLDER), ignore_errors=True)

@@ -387,6 +387,30 @@ class Stops(unittest.TestCase):
         self.robot.frozen = False
         self.assert_goes_on()
 
+    def fall_behind(self):
+        """As when a link or a computer was held up for two seconds: what goes on coming is old."""
+        self.robot.time += 2.0
+        self.robot.step()
+        wait_until(self.robot.stands, "the robot to stop at once")
+
+    def test_images_that_come_late(self):
+        self.robot.image_late_s = 2.0
+        self.fall_behind()
+        self.assert_stands("no fresh image")
+        self.steps(10)
+        self.assert_stands("no fresh image")
+        self.robot.image_late_s = 0.0
+        self.assert_goes_on(2)
+
+    def test_odometry_that_comes_late(self):
+        self.robot.odometry_late_s = 2.0
+        self.fall_behind()
+        self.assert_stands("no odometry")
+        self.steps(10)
+        self.assert_stands("no odometry")
+        self.robot.odometry_late_s = 0.0
+        self.assert_goes_on(2)
+
     def test_image_stamps_that_go_back(self):
         self.robot.image_changes = {"header": self.header(-1.0)}
         self.robot.step()

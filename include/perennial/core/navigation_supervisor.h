@@ -62,7 +62,8 @@ class NavigationSupervisor {
 
   /// A goal was accepted.
   void start(double now_s);
-  /// An image was registered: taken at `stamp_s`, having travelled `travelled_m`.
+  /// An image was registered: taken at `stamp_s`, having travelled `travelled_m`. One that comes late, by the
+  /// newest time heard of, lets nothing move.
   const NavigationStatus& see(double stamp_s, double travelled_m, const Sight& sight,
                               const MotionPermit& permit);
   /// To be called regularly. `missing`: what navigation waits for, if it waits for anything: "image",
@@ -102,6 +103,7 @@ class NavigationSupervisor {
   NavigationStatus status_{NavigationMode::kIdle, "waiting for a goal", 0.0};
   double newest_s_ = 0.0;  ///< newest time heard of
   double seen_s_ = 0.0;    ///< stamp of the newest image used, or of the goal
+  bool late_ = false;      ///< it was old already when it came
   bool seen_any_ = false;
   bool on_path_ = false;  ///< whether the path was recognised since the goal came
   std::string starting_;  ///< reason for a robot that has not seen anything yet

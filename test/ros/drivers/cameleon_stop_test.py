@@ -20,6 +20,7 @@ from robot_bench import RobotBench  # noqa: E402
 WATCHDOG_S = 0.84  # the robot's own
 REACTION_S = 0.4
 MASTER_TIMEOUT_S = 1.0
+DEFAULT_LIMIT_MPS = 0.5
 
 
 def free_port():
@@ -90,15 +91,22 @@ class CameleonStopTest(unittest.TestCase):
         took, _ = self.end_driver(signal.SIGKILL)
         self.assertLess(took, WATCHDOG_S + REACTION_S)
 
+    def start_master(self, port):
+        """A second master: the simulated robot is not concerned by what becomes of it."""
+        master = self.start(["rosmaster", "--core", "-p", str(port)])
+        self.bench.wait_for(lambda: listens(port), "the second master is up")
+        return master
+
+    def start_commander(self, forward, uri):
+        command = "{linear: {x: %f}, angular: {z: 0.0}}" % forward
+        self.start(["rostopic", "pub", "-r", "20", "cmd_vel", "geometry_msgs/Twist", command], ROS_MASTER_URI=uri)
+
     def test_stops_when_the_master_is_gone(self):
         port = free_port()
         uri = "http://127.0.0.1:%d" % port
-        core = self.start(["rosmaster", "--core", "-p", str(port)], ROS_MASTER_URI=uri)
-        self.bench.wait_for(lambda: listens(port), "the second master is up")
+        core = self.start_master(port)
         self.start_driver(ROS_MASTER_URI=uri)
-        commander = ["rostopic", "pub", "-r", "20", "cmd_vel", "geometry_msgs/Twist",
-                     "{linear: {x: 0.3}, angular: {z: 0.0}}"]
-        self.start(commander, ROS_MASTER_URI=uri)
+        self.start_commander(0.3, uri)
         self.bench.wait_until_moving()
         begin = self.bench.now()
         core.kill()
@@ -109,6 +117,28 @@ class CameleonStopTest(unittest.TestCase):
         still = self.bench.now()
         self.bench.wait_loops(25)  # the commander goes on: the connection of its topic does not need the master
         self.assertFalse(self.bench.moved_since(still))
+
+    def test_stands_until_commanded_when_the_master_was_restarted(self):
+        port = free_port()
+        uri = "http://127.0.0.1:%d" % port
+        master = self.start_master(port)
+        driver = self.start_driver(ROS_MASTER_URI=uri)
+        self.start_commander(0.3, uri)
+        self.bench.wait_until_moving()
+        master.kill()
+        master.wait(20.0)
+        self.start_master(port)
+        self.assertEqual(driver.wait(60.0), 1, "the new master does not know it")
+        still = self.bench.wait_until_still()
+        # By its defaults but for the robot's address: all other parameters went with the old master.
+        self.start([self.binary, "__name:=cameleon_driver", "_robot_host:=127.0.0.1", "_robot_port:=50115"],
+                   ROS_MASTER_URI=uri)
+        listener = self.start(["rostopic", "echo", "-n", "5", "odom"], ROS_MASTER_URI=uri, PYTHONUNBUFFERED="1")
+        self.assertEqual(listener.wait(60.0), 0)
+        self.bench.wait_loops(25)
+        self.assertFalse(self.bench.moved_since(still), "the old commander cannot reach the new driver")
+        self.start_commander(3.0, uri)
+        self.bench.wait_for(lambda: self.bench.states[-1][1] == DEFAULT_LIMIT_MPS, "the robot to drive as fast as it may")
 
     def test_a_latched_emergency_stop_holds_a_driver_that_starts_later(self):
         stop = rospy.Publisher("emergency_stop", Bool, queue_size=1, latch=True)

@@ -25,7 +25,7 @@ def free_port():
         return found.getsockname()[1]
 
 
-class Restarted(unittest.TestCase):
+class MasterRestart(unittest.TestCase):
     processes = []
 
     @classmethod
@@ -46,20 +46,20 @@ class Restarted(unittest.TestCase):
         with open(os.path.join(folder, name + ".yaml")) as file:
             loaded = yaml.safe_load(file)
         loaded.update(parameters)
-        rosgraph.Master("/master_test").setParam("/" + name, loaded)
+        rosgraph.Master("/master_restart_test").setParam("/" + name, loaded)
         return cls.start("rosrun", "perennial_nav", name + "_node", "image:=/camera/image_raw", "__name:=" + name)
 
     @classmethod
     def setUpClass(cls):
         os.environ["ROS_MASTER_URI"] = "http://127.0.0.1:%d" % free_port()
         cls.master = cls.start_master()
-        rosgraph.Master("/master_test").setParam("/use_sim_time", True)
+        rosgraph.Master("/master_restart_test").setParam("/use_sim_time", True)
         cls.nodes = [
             cls.start_node("teach_recorder", map_folder=FOLDER),
             cls.start_node("map_manager", map_folder=FOLDER),
             cls.start_node("repeat_navigator"),
         ]
-        rospy.init_node("master_test")
+        rospy.init_node("master_restart_test")
         from stack import LENGTH_M, Stack  # needs the node
 
         cls.length_m = LENGTH_M
@@ -103,6 +103,6 @@ if __name__ == "__main__":
     FOLDER = rospy.myargv()[1]
     shutil.rmtree(FOLDER, ignore_errors=True)
     try:
-        rostest.rosrun("perennial_nav", "master", Restarted, sys.argv)
+        rostest.rosrun("perennial_nav", "master_restart", MasterRestart, sys.argv)
     finally:
         shutil.rmtree(FOLDER, ignore_errors=True)
