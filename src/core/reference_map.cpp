@@ -1,6 +1,7 @@
 #include "perennial/core/reference_map.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -32,6 +33,31 @@ std::string contentOf(const std::string& file) {
   return content.str();
 }
 
+/// OpenCV writes one document, its names at the beginning of lines and everything else indented. It reads
+/// other texts, too, but over some with indented names, with other things that are not, or with a second
+/// document its parser runs for ever.
+void requireAsWritten(const std::string& content, const std::string& file) {
+  std::istringstream lines(content);
+  std::string line;
+  bool named = false;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (!line.empty() && line.back() == '\r') {
+      line.pop_back();
+    }
+    const char first = line.empty() ? '#' : line[0];
+    if (first == '#' || (!named && (first == '%' || line == "---"))) {
+      continue;
+    }
+    const bool indented = first == ' ' || first == '\t';
+    const bool name = std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '_' || first == '"';
+    if (indented ? !named : !name) {
+      throw DatasetError(file + ":" + std::to_string(number) +
+                         ": is no OpenCV FileStorage YAML: there, a name begins the line");
+    }
+    named = true;
+  }
+}
+
 /// Calls `read` with the parsed YAML; what OpenCV throws becomes a DatasetError.
 template <typename Read>
 auto parsed(const std::string& content, const std::string& file, const Read& read) {
@@ -40,6 +66,7 @@ auto parsed(const std::string& content, const std::string& file, const Read& rea
     if (content.compare(0, 5, "%YAML") != 0) {
       throw DatasetError(file + ":1: is no OpenCV FileStorage YAML: it does not begin with %YAML");
     }
+    requireAsWritten(content, file);
     const cv::FileStorage storage(
         content, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
     return read(storage);

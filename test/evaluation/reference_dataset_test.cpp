@@ -156,6 +156,20 @@ TEST_F(ReferenceMaps, malformedOnesAreRefusedByName) {
   expectError(errorOf([&] { readReferenceMap(folder_ / "none.yaml"); }), "none.yaml", "cannot be read");
 }
 
+/// Found by fuzz_reference_map.
+TEST_F(ReferenceMaps, whatOpenCvWouldReadForEverIsRefused) {
+  for (const std::string text : {" ta: b]\nTi\n--c-\n . ", "Image: 1\n--c-\n", " Image: 1\n", "...-\n...e",
+                                 "Image: 1\n...\n---\nImage: 2\n"}) {
+    try {
+      decodeReferenceMap("%YAML:1.0\n---\n" + text, "spring_000.000.yaml");
+      FAIL() << text;
+    } catch (const DatasetError& error) {
+      EXPECT_NE(std::string(error.what()).find("spring_000.000.yaml:"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("a name begins the line"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(ReferenceMaps, profilesAreReadAndChecked) {
   const std::string file = folder_ / "m.yaml";
   const auto write = [&](const std::vector<float>& path) {
