@@ -27,9 +27,6 @@ if(no_rtsp_server)
   message(STATUS "Tests of cameleon_video_node left out: they need gir1.2-gst-rtsp-server-1.0")
 elseif(TARGET cameleon_video_node)
   add_rostest(ros/drivers/video.test DEPENDENCIES cameleon_video_node)
-  add_rostest(ros/drivers/killed_video.test
-    ARGS folder:=${scratch}/killed_video
-    DEPENDENCIES ${stack_nodes} ${cameleon_nodes} cameleon_video_node)
 endif()
 
 add_rostest(ros/loopback.test DEPENDENCIES ${stack_nodes} ${cameleon_nodes} teleop_node)
