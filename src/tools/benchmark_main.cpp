@@ -19,10 +19,13 @@
 #endif
 
 #include "core/features/brief_descriptor.h"
+#include "core/features/edge_field_extractor.h"
+#include "core/features/half_image.h"
 #include "core/features/hessian_pyramid.h"
 #include "core/features/integral_image.h"
 #include "core/features/maxima.h"
 #include "core/features/surf_detector.h"
+#include "core/registration/edge_correlation.h"
 #include "core/simd/kernels.h"
 #include "perennial/core/feature_extractor.h"
 #include "perennial/core/place_finder.h"
@@ -103,6 +106,36 @@ void describe(benchmark::State& state, const Case& c) {
   }
 }
 
+/// All of an image's features, and its edges where the settings want them.
+void extract(benchmark::State& state, const Case& c, bool spread) {
+  const cv::Mat image = scene(c.size);
+  FeatureExtractor extractor(extraction(c.features, spread));
+  FeatureSet view;
+  for (auto _ : state) {
+    extractor.extractInto(image, view);
+    benchmark::ClobberMemory();
+  }
+}
+
+void edgeField(benchmark::State& state, const Case& c) {
+  cv::Mat half;
+  halveImage(scene(c.size), half);
+  EdgeFieldExtractor extractor;
+  EdgeField field;
+  for (auto _ : state) {
+    extractor.compute(half, field);
+    benchmark::ClobberMemory();
+  }
+}
+
+void edgeCorrelation(benchmark::State& state, const Case& c) {
+  const EdgeField field = edgeFieldOf(scene(c.size));
+  EdgeCorrelation correlation;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(correlation.compute(field, field));
+  }
+}
+
 /// The registration against features of the scene as seen 30 px further left.
 class Against {
  public:
@@ -133,8 +166,8 @@ class Against {
   RegistrationResult result_;
 };
 
-void matchAndVote(benchmark::State& state, const Case& c, RegistrationMethod method) {
-  Against against(c, method, false);
+void matchAndVote(benchmark::State& state, const Case& c, RegistrationMethod method, bool spread) {
+  Against against(c, method, spread);
   for (auto _ : state) {
     against.registerView();
     benchmark::ClobberMemory();
@@ -238,11 +271,19 @@ void addPath(const Case& c) {
   add("hessian", c, hessian);
   add("detect", c, detect);
   add("describe", c, describe);
-  const auto method = [](Method m) {
-    return [m](benchmark::State& s, const Case& k) { matchAndVote(s, k, m); };
+  add("edge_field", c, edgeField);
+  add("edge_correlation", c, edgeCorrelation);
+  const auto features = [](bool spread) {
+    return [spread](benchmark::State& s, const Case& k) { extract(s, k, spread); };
   };
-  add("register_histogram", c, method(Method::kHistogram));
-  add("register_robust", c, method(Method::kRobust));
+  add("extract", c, features(false));
+  add("extract_default", c, features(true));
+  const auto method = [](Method m, bool spread) {
+    return [m, spread](benchmark::State& s, const Case& k) { matchAndVote(s, k, m, spread); };
+  };
+  add("register_histogram", c, method(Method::kHistogram, false));
+  add("register_robust", c, method(Method::kRobust, false));
+  add("register_default", c, method(Method::kRobust, true));
   const auto frame = [](Method m, bool spread) {
     return [m, spread](benchmark::State& s, const Case& k) { wholeFrame(s, k, m, spread); };
   };
@@ -296,6 +337,9 @@ class Reporter : public benchmark::ConsoleReporter {
              : stage.rfind("whole", 0) == 0 ? "opencv_orb"
                                             : "none") +
                 circumstances + "/library");
+      if (stage == "whole_frame") {
+        ratio(name, ms, "dlib_surf_detect" + circumstances + "/library");
+      }
       if (stage.rfind("register", 0) == 0) {
         ratio(name, ms, "opencv_bfmatcher" + circumstances + "/library");
       }
